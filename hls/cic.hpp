@@ -5,11 +5,11 @@
 //   H(z) = ((1 - z^-R) / (1 - z^-1))^5, R = decimation
 //
 // in       product Q1.23 at the ADC rate
-// out      baseband Q1.27 at the loop rate, gain R^5 / 2^g with g = growth bits: 0.763 (R = 20), 0.582 (R = 50)
-// delay    5 (R - 1) / 2 samples; one output every R samples
-// rounding none inside (words of 24 + g bits wrap and the combs undo it); output rounded half up, cannot overflow
-// rejects  (sin(pi f R / fs) / (R sin(pi f / fs)))^5: the image at 2 x 4425 Hz by 92 dB
-// source   E. B. Hogenauer, An economical class of digital filters for decimation and interpolation, 1981
+// out      baseband Q1.27 at the loop rate, gain R^5 / 2^g with g = growth bits: 0.763 (R = 20), 0.582 (R =
+// 50) delay    5 (R - 1) / 2 samples; one output every R samples rounding none inside (words of 24 + g bits
+// wrap and the combs undo it); output rounded half up, cannot overflow rejects  (sin(pi f R / fs) / (R sin(pi
+// f / fs)))^5: the image at 2 x 4425 Hz by 92 dB source   E. B. Hogenauer, An economical class of digital
+// filters for decimation and interpolation, 1981
 #ifndef HEMI_HLS_CIC_HPP
 #define HEMI_HLS_CIC_HPP
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every width, rate, register and tap of the core, declared once. The fixed-point kernels, the golden model, the
-// RTL's package (generated from this file) and the program all take them from here; docs/chain.md explains them.
+// Every width, rate, register and tap of the core, declared once. The fixed-point kernels, the golden model,
+// the RTL's package (generated from this file) and the program all take them from here; docs/chain.md
+// explains them.
 #ifndef HEMI_HLS_CONFIG_HPP
 #define HEMI_HLS_CONFIG_HPP
 
@@ -15,7 +16,8 @@ struct Format {
   int fraction;
 };
 
-// ---- Two instruments: reference (16 bit, 100 kS/s) and wide (18 bit, 250 kS/s) -------------------------------
+// ---- Two instruments: reference (16 bit, 100 kS/s) and wide (18 bit, 250 kS/s)
+// -------------------------------
 /// Smallest g with base^exponent <= 2^g, for the growth of a cascaded integrator-comb filter.
 constexpr int growth_bits(int base, int exponent) {
   std::int64_t power = 1;
@@ -25,10 +27,10 @@ constexpr int growth_bits(int base, int exponent) {
   return bits;
 }
 
-constexpr int cic_order = 5;           ///< order 3 would leave the image at twice the carrier in the output
-constexpr int product_bits = 24;       ///< demodulator products, s0.23
-constexpr int ticks_per_output = 25;   ///< loop rate over output rate
-constexpr int output_rate_hz = 200;  ///< at the nominal ADC rate
+constexpr int cic_order = 5;          ///< order 3 would leave the image at twice the carrier in the output
+constexpr int product_bits = 24;      ///< demodulator products, s0.23
+constexpr int ticks_per_output = 25;  ///< loop rate over output rate
+constexpr int output_rate_hz = 200;   ///< at the nominal ADC rate
 
 template <int AdcBits, int AdcRateHz, int Decimation>
 struct Instrument {
@@ -38,45 +40,48 @@ struct Instrument {
   static constexpr int samples_per_output = Decimation * ticks_per_output;
   static constexpr int cic_growth = growth_bits(Decimation, cic_order);
   static constexpr int cic_bits = product_bits + cic_growth;
-  static_assert(AdcRateHz == 200 * Decimation * ticks_per_output, "the output rate is 200 Hz at the nominal ADC rate");
+  static_assert(AdcRateHz == 200 * Decimation * ticks_per_output,
+                "the output rate is 200 Hz at the nominal ADC rate");
 };
 using Reference = Instrument<16, 100000, 20>;
 using Wide = Instrument<18, 250000, 50>;
 
-// ---- Formats ---------------------------------------------------------------------------------------------------
-constexpr Format phase = {53, 48};           ///< nco phase, turns modulo 32
-constexpr Format increment = {49, 48};       ///< turns a sample
-constexpr Format sine = {20, 19};            ///< nco outputs
+// ---- Formats
+// ---------------------------------------------------------------------------------------------------
+constexpr Format phase = {53, 48};      ///< nco phase, turns modulo 32
+constexpr Format increment = {49, 48};  ///< turns a sample
+constexpr Format sine = {20, 19};       ///< nco outputs
 constexpr Format product = {product_bits, 23};
-constexpr Format baseband = {28, 27};        ///< I and Q at the loop rate
-constexpr Format cordic = {34, 32};          ///< x and y of the CORDIC; amplitude of one tick
-constexpr Format angle = {32, 32};           ///< phase error, turns modulo 1
-constexpr Format tick_phase = {37, 32};      ///< phase of one tick, turns modulo 32
-constexpr Format total_phase = {46, 32};     ///< unwrapped phase, turns modulo 2^14
-constexpr Format frequency = {46, 29};       ///< nominal Hz (Hz * nominal ADC rate / ADC rate)
-constexpr Format amplitude_sum = {40, 32};   ///< sum over 50 ticks
-constexpr Format phase_error_sum = {38, 32}; ///< sum over 50 ticks, turns
-constexpr Format rate_tick = {37, 26};       ///< deg/h / 625, one tick
+constexpr Format baseband = {28, 27};         ///< I and Q at the loop rate
+constexpr Format cordic = {34, 32};           ///< x and y of the CORDIC; amplitude of one tick
+constexpr Format angle = {32, 32};            ///< phase error, turns modulo 1
+constexpr Format tick_phase = {37, 32};       ///< phase of one tick, turns modulo 32
+constexpr Format total_phase = {46, 32};      ///< unwrapped phase, turns modulo 2^14
+constexpr Format frequency = {46, 29};        ///< nominal Hz (Hz * nominal ADC rate / ADC rate)
+constexpr Format amplitude_sum = {40, 32};    ///< sum over 50 ticks
+constexpr Format phase_error_sum = {38, 32};  ///< sum over 50 ticks, turns
+constexpr Format rate_tick = {37, 26};        ///< deg/h / 625, one tick
 constexpr Format rate_accumulator = {47, 26};
-constexpr Format rate = {36, 16};            ///< deg/h
-constexpr Format offset = {24, 23};          ///< (frequency - reference) / 64 Hz
-constexpr Format fine_offset = {32, 25};     ///< frequency - reference, nominal Hz
+constexpr Format rate = {36, 16};         ///< deg/h
+constexpr Format offset = {24, 23};       ///< (frequency - reference) / 64 Hz
+constexpr Format fine_offset = {32, 25};  ///< frequency - reference, nominal Hz
 constexpr Format block_sum = {44, 25};
-constexpr Format slope_sum = {51, 25};       ///< numerator of the least-squares slope
-constexpr Format slope_word = {30, 29};      ///< the numerator after its programmable shift
-constexpr Format derivative = {24, 23};      ///< df/dt over its programmable full scale
-constexpr Format temperature = {30, 20};     ///< degC
-constexpr Format bias = {30, 13};            ///< deg/h
-constexpr Format scale_operand = {32, 11};   ///< deg/h, operand of the scale-factor correction
+constexpr Format slope_sum = {51, 25};      ///< numerator of the least-squares slope
+constexpr Format slope_word = {30, 29};     ///< the numerator after its programmable shift
+constexpr Format derivative = {24, 23};     ///< df/dt over its programmable full scale
+constexpr Format temperature = {30, 20};    ///< degC
+constexpr Format bias = {30, 13};           ///< deg/h
+constexpr Format scale_operand = {32, 11};  ///< deg/h, operand of the scale-factor correction
 
-constexpr int offset_span_hz = 64;      ///< nominal Hz at offset = 1
-constexpr int derivative_blocks = 16;        ///< blocks in the window of df/dt
-constexpr int max_log2_block = 12;           ///< outputs a block, at most 2^12
+constexpr int offset_span_hz = 64;     ///< nominal Hz at offset = 1
+constexpr int derivative_blocks = 16;  ///< blocks in the window of df/dt
+constexpr int max_log2_block = 12;     ///< outputs a block, at most 2^12
 
 // nco table: a quarter wave of 512 lines; a line is (base, delta) and is interpolated with 14 bits.
 constexpr int table_index_bits = 9;
-constexpr int table_fine_bits = 13;          ///< phase bits behind the index; half a bit is added to each
-constexpr int table_scale = (1 << 20) - 2;   ///< base of a full sine: the sum can round to 2^19 - 1 and no higher
+constexpr int table_fine_bits = 13;  ///< phase bits behind the index; half a bit is added to each
+constexpr int table_scale =
+    (1 << 20) - 2;  ///< base of a full sine: the sum can round to 2^19 - 1 and no higher
 constexpr int cordic_iterations = 24;
 
 // image_filter: a double zero at 1150 Hz of 5 kHz, where the image at twice the carrier folds to.
@@ -84,10 +89,11 @@ constexpr int image_taps[5] = {16, -8, 33, -8, 16};
 constexpr int image_shift = 6;
 
 // reference_phase_loop
-constexpr int lock_window_log2 = 28;         ///< |phase error| < 2^28 / 2^32 = 1/16 turn counts towards lock
-constexpr int lock_penalty = 4;              ///< steps back for a tick outside the window
+constexpr int lock_window_log2 = 28;  ///< |phase error| < 2^28 / 2^32 = 1/16 turn counts towards lock
+constexpr int lock_penalty = 4;       ///< steps back for a tick outside the window
 
-// ---- Registers ---------------------------------------------------------------------------------------------------
+// ---- Registers
+// ---------------------------------------------------------------------------------------------------
 struct Register {
   const char* name;
   Format format;
@@ -168,7 +174,8 @@ constexpr Register registers[register_count] = {
     {"parity", {54, 0}, "1", "exclusive or of all other registers, sign-extended to 54 bits"},
 };
 
-// ---- Record: nine words at the output rate, in this order ------------------------------------------------------
+// ---- Record: nine words at the output rate, in this order
+// ------------------------------------------------------
 enum RecordWord {
   word_frequency,
   word_temperature,
@@ -182,7 +189,8 @@ enum RecordWord {
   record_words
 };
 
-// ---- Status bits: live in bits 0..15, sticky in 16..31 --------------------------------------------------------
+// ---- Status bits: live in bits 0..15, sticky in 16..31
+// --------------------------------------------------------
 enum StatusBit {
   status_unlocked,
   status_holdover,
@@ -202,13 +210,25 @@ enum StatusBit {
   status_frequency_invalid,
   status_bits
 };
-constexpr const char* status_names[status_bits] = {
-    "unlocked",           "holdover",          "adc_overload",           "secondary_saturated",
-    "loop_saturated",     "rate_saturated",    "frequency_out_of_range", "thermometer_saturated",
-    "derivative_saturated", "derivative_invalid", "bias_saturated",      "compensation_saturated",
-    "out_of_calibrated_range", "sample_gap",   "parity_error",           "frequency_invalid"};
+constexpr const char* status_names[status_bits] = {"unlocked",
+                                                   "holdover",
+                                                   "adc_overload",
+                                                   "secondary_saturated",
+                                                   "loop_saturated",
+                                                   "rate_saturated",
+                                                   "frequency_out_of_range",
+                                                   "thermometer_saturated",
+                                                   "derivative_saturated",
+                                                   "derivative_invalid",
+                                                   "bias_saturated",
+                                                   "compensation_saturated",
+                                                   "out_of_calibrated_range",
+                                                   "sample_gap",
+                                                   "parity_error",
+                                                   "frequency_invalid"};
 
-// ---- Taps: the outputs of each block, in the order of the data ------------------------------------------------
+// ---- Taps: the outputs of each block, in the order of the data
+// ------------------------------------------------
 enum class TapRate { sample, tick, output };
 struct Tap {
   const char* block;

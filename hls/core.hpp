@@ -5,8 +5,8 @@
 //   nco -> demodulator -> cic -> image_filter -> phase_detector -> reference_phase_loop (back to the nco)
 //       -> frequency_tracker, rate_filter -> thermometer -> derivative -> bias_model -> status -> record
 //
-// Template parameters: the instrument (config::Reference, config::Wide). `probe(tap, value)` hears the output of every
-// block (config::TapIndex); NoProbe costs nothing. docs/chain.md is the contract.
+// Template parameters: the instrument (config::Reference, config::Wide). `probe(tap, value)` hears the output
+// of every block (config::TapIndex); NoProbe costs nothing. docs/chain.md is the contract.
 #ifndef HEMI_HLS_CORE_HPP
 #define HEMI_HLS_CORE_HPP
 
@@ -145,9 +145,11 @@ class Core {
   }
 
   template <class Probe>
-  void finish(const Frequency& frequency, const Rate& rate, bool valid, bool good, Record& record, Probe& probe) {
+  void finish(const Frequency& frequency, const Rate& rate, bool valid, bool good, Record& record,
+              Probe& probe) {
     const Registers& r = registers_;
-    bool out_of_range = false, hot = false, steep = false, bias_saturated = false, compensation_saturated = false;
+    bool out_of_range = false, hot = false, steep = false, bias_saturated = false,
+         compensation_saturated = false;
     const Thermometer::Difference difference = Thermometer::difference(frequency, r);
     const Offset offset = Thermometer::offset(difference, out_of_range);
     const Temperature temperature = Thermometer::temperature(offset, r, hot);
@@ -160,7 +162,8 @@ class Core {
     status_.raise(config::status_derivative_invalid, !derivative_.valid());
     status_.raise(config::status_bias_saturated, bias_saturated);
     status_.raise(config::status_compensation_saturated, compensation_saturated);
-    status_.raise(config::status_out_of_calibrated_range, offset < r.calibrated_low || offset > r.calibrated_high);
+    status_.raise(config::status_out_of_calibrated_range,
+                  offset < r.calibrated_low || offset > r.calibrated_high);
     status_.raise(config::status_parity_error, r.parity_error);
     status_.raise(config::status_frequency_invalid, !valid);
     const std::int64_t status = status_.close();

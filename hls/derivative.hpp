@@ -2,7 +2,8 @@
 //
 // derivative: df/dt by least squares over 16 blocks of M = 2^log2_block outputs.
 //
-//   slope_sum = sum_{j=0..15} (2j - 15) b_j, b_j block sums of f - f_reference;  slope = slope_sum 6/4080 / (M^2 Ts)
+//   slope_sum = sum_{j=0..15} (2j - 15) b_j, b_j block sums of f - f_reference;  slope = slope_sum 6/4080 /
+//   (M^2 Ts)
 //
 // in       f - f_reference Q18.29, once an output
 // out      derivative Q1.23 of a full scale that slope_shift and slope_gain set; moves once a block
@@ -33,7 +34,8 @@ class DerivativeFilter {
       restart();
       return derivative_;
     }
-    sum_ = wrap_add(sum_, clip<Word<config::fine_offset>, Clipped<config::fine_offset>>(difference, saturated));
+    sum_ =
+        wrap_add(sum_, clip<Word<config::fine_offset>, Clipped<config::fine_offset>>(difference, saturated));
     ++count_;
     if (count_ >= (std::int32_t{1} << r.log2_block)) close_block(r, saturated);
     return derivative_;
@@ -64,7 +66,8 @@ class DerivativeFilter {
       const SlopeSum difference = quantise<SlopeSum>(block_[config::derivative_blocks - 1 - j] - block_[j]);
       slope_sum_ = wrap_add(slope_sum_, quantise<SlopeSum>(difference * weight));
     }
-    derivative_ = clip<Derivative, Clipped<config::derivative>>(shifted(r.slope_shift, saturated) * r.slope_gain, saturated);
+    derivative_ = clip<Derivative, Clipped<config::derivative>>(
+        shifted(r.slope_shift, saturated) * r.slope_gain, saturated);
   }
 
   /// slope_sum / 2^shift, rounded half up and clipped, as a fraction.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Backend 1 of hls/fixed.hpp, where the contract stands: ap_fixed of AMD's Vitis HLS. Its
-// expressions are ap_fixed_base, from which ap_fixed derives.
+// Backend 1 of hls/fixed.hpp, where the contract stands: ap_fixed of AMD's Vitis HLS. Its expressions
+// are of type ap_fixed_base, from which ap_fixed derives.
 #ifndef HEMI_HLS_FIXED_AP_HPP_
 #define HEMI_HLS_FIXED_AP_HPP_
 
@@ -28,29 +28,33 @@ constexpr ap_o_mode ap_overflow(Overflow mode) {
 template <int W, int I, Round R = Round::floor, Overflow O = Overflow::wrap>
 using Fixed = ap_fixed<W, I, detail::ap_rounding(R), detail::ap_overflow(O)>;
 
-template <int W, int I, ap_q_mode Q, ap_o_mode O>
-struct fixed_traits<ap_fixed<W, I, Q, O>> {
+template <int W, int I, ap_q_mode Q, ap_o_mode O, int N>
+struct fixed_traits<ap_fixed_base<W, I, true, Q, O, N>> {
   static_assert(W >= 1 && W <= 63, "Fixed holds 1 to 63 bits: quantise the operands before this operation");
   static constexpr int width = W;
   static constexpr int integer = I;
   static constexpr int fraction = W - I;
 };
 
-template <int W, int I, ap_q_mode Q, ap_o_mode O>
-std::int64_t raw(const ap_fixed_base<W, I, true, Q, O, NN>& x) {
+template <int W, int I, ap_q_mode Q, ap_o_mode O, int N>
+struct fixed_traits<ap_fixed<W, I, Q, O, N>> : fixed_traits<ap_fixed_base<W, I, true, Q, O, N>> {};
+
+template <int W, int I, ap_q_mode Q, ap_o_mode O, int N>
+std::int64_t raw(const ap_fixed_base<W, I, true, Q, O, N>& x) {
   static_assert(W <= 63, "raw: quantise to at most 63 bits first");
-  return x.template slc<W>(0).to_int64();
+  const ap_int<W> bits(x.range(W - 1, 0));
+  return bits.to_int64();
 }
 
 template <class T>
 T from_raw(std::int64_t word) {
   T x;
-  x.set_slc(0, ap_int<fixed_traits<T>::width>(static_cast<long long>(word)));
+  x.V = ap_int<fixed_traits<T>::width>(word).V;
   return x;
 }
 
-template <class T, int W, int I, ap_q_mode Q, ap_o_mode O>
-T quantise(const ap_fixed_base<W, I, true, Q, O, NN>& x) {
+template <class T, int W, int I, ap_q_mode Q, ap_o_mode O, int N>
+T quantise(const ap_fixed_base<W, I, true, Q, O, N>& x) {
   return T(x);
 }
 
@@ -62,9 +66,9 @@ struct ApSaturationTest;
 template <int W, int I, ap_q_mode Q, ap_o_mode O>
 struct ApSaturationTest<ap_fixed<W, I, Q, O>> {
   /// Rounds like the target into a type that holds every rounded x, then asks whether the target does.
-  template <int Wx, int Ix, ap_q_mode Qx, ap_o_mode Ox>
-  static bool apply(const ap_fixed_base<Wx, Ix, true, Qx, Ox, NN>& x) {
-    constexpr int integer = (Ix > I ? Ix : I) + 1;
+  template <class X>
+  static bool apply(const X& x) {
+    constexpr int integer = (fixed_traits<X>::integer > I ? fixed_traits<X>::integer : I) + 1;
     const ap_fixed<integer + W - I, integer, Q, AP_WRAP> rounded(x);
     return rounded != ap_fixed<W, I, Q, O>(rounded);
   }
@@ -72,39 +76,40 @@ struct ApSaturationTest<ap_fixed<W, I, Q, O>> {
 
 }  // namespace detail
 
-template <class T, int W, int I, ap_q_mode Q, ap_o_mode O>
-bool saturates(const ap_fixed_base<W, I, true, Q, O, NN>& x) {
+template <class T, int W, int I, ap_q_mode Q, ap_o_mode O, int N>
+bool saturates(const ap_fixed_base<W, I, true, Q, O, N>& x) {
   return detail::ApSaturationTest<T>::apply(x);
 }
 
-template <int W, int I, ap_q_mode Q, ap_o_mode O>
-bool is_negative(const ap_fixed_base<W, I, true, Q, O, NN>& x) {
+template <int W, int I, ap_q_mode Q, ap_o_mode O, int N>
+bool is_negative(const ap_fixed_base<W, I, true, Q, O, N>& x) {
   return x[W - 1];
 }
 
 template <int W, int I, ap_q_mode Q, ap_o_mode O>
-ap_fixed<W, I, Q, O> shift_right(const ap_fixed_base<W, I, true, Q, O, NN>& x, int n) {
-  return from_raw<ap_fixed<W, I, Q, O>>((x.template slc<W>(0) >> n).to_int64());
+ap_fixed<W, I, Q, O> shift_right(const ap_fixed<W, I, Q, O>& x, int n) {
+  const ap_int<W> bits(x.range(W - 1, 0));
+  ap_fixed<W, I, Q, O> y;
+  y.V = ap_int<W>(bits >> n).V;
+  return y;
 }
 
-template <int N, int W, int I, ap_q_mode Q, ap_o_mode O>
-ap_fixed<W, I + N, Q, O> scale(const ap_fixed_base<W, I, true, Q, O, NN>& x) {
-  ap_fixed<W, I + N, Q, O> y;
-  y.set_slc(0, x.template slc<W>(0));
+template <int S, int W, int I, ap_q_mode Q, ap_o_mode O>
+ap_fixed<W, I + S, Q, O> scale(const ap_fixed<W, I, Q, O>& x) {
+  ap_fixed<W, I + S, Q, O> y;
+  y.V = x.V;
   return y;
 }
 
 template <int W, int I, ap_q_mode Q, ap_o_mode O, int Wb, int Ib, ap_q_mode Qb, ap_o_mode Ob>
-ap_fixed<W, I, Q, O> wrap_add(const ap_fixed_base<W, I, true, Q, O, NN>& a,
-                                    const ap_fixed_base<Wb, Ib, true, Qb, Ob, NN>& b) {
+ap_fixed<W, I, Q, O> wrap_add(const ap_fixed<W, I, Q, O>& a, const ap_fixed<Wb, Ib, Qb, Ob>& b) {
   static_assert(Wb - Ib <= W - I, "wrap_add: the second operand has more fraction bits than the first");
   const ap_fixed<W, I> wrapped(a + b);
   return ap_fixed<W, I, Q, O>(wrapped);
 }
 
 template <int W, int I, ap_q_mode Q, ap_o_mode O, int Wb, int Ib, ap_q_mode Qb, ap_o_mode Ob>
-ap_fixed<W, I, Q, O> wrap_sub(const ap_fixed_base<W, I, true, Q, O, NN>& a,
-                                    const ap_fixed_base<Wb, Ib, true, Qb, Ob, NN>& b) {
+ap_fixed<W, I, Q, O> wrap_sub(const ap_fixed<W, I, Q, O>& a, const ap_fixed<Wb, Ib, Qb, Ob>& b) {
   static_assert(Wb - Ib <= W - I, "wrap_sub: the second operand has more fraction bits than the first");
   const ap_fixed<W, I> wrapped(a - b);
   return ap_fixed<W, I, Q, O>(wrapped);

@@ -31,7 +31,9 @@ constexpr sc_dt::sc_o_mode sc_overflow(Overflow mode) {
 }
 
 /// x * 2^n, n of either sign.
-inline sc_dt::sc_fxval sc_shift(const sc_dt::sc_fxval& x, int n) { return n >= 0 ? x << n : x >> -n; }
+inline sc_dt::sc_fxval sc_shift(const sc_dt::sc_fxval& x, int n) {
+  return n >= 0 ? x << n : x >> -n;
+}
 
 }  // namespace detail
 
@@ -46,9 +48,10 @@ struct fixed_traits<sc_dt::sc_fixed<W, I, Q, O, N>> {
   static constexpr int fraction = W - I;
 };
 
+/// By way of the bits: to_int64() of SystemC 2.3.4 gives 0 for multiples of 2^32 of more than 32 bits.
 template <int W, int I, sc_dt::sc_q_mode Q, sc_dt::sc_o_mode O, int N>
 std::int64_t raw(const sc_dt::sc_fixed<W, I, Q, O, N>& x) {
-  return detail::sc_shift(x, W - I).to_int64();
+  return x.range().to_int64();
 }
 
 template <class T>
@@ -79,8 +82,12 @@ bool saturates(const sc_dt::sc_fxnum& x) {
 }
 
 /// Zero may carry either sign in SystemC's values.
-inline bool is_negative(const sc_dt::sc_fxval& x) { return x.is_neg() && !x.is_zero(); }
-inline bool is_negative(const sc_dt::sc_fxnum& x) { return x.is_neg() && !x.is_zero(); }
+inline bool is_negative(const sc_dt::sc_fxval& x) {
+  return x.is_neg() && !x.is_zero();
+}
+inline bool is_negative(const sc_dt::sc_fxnum& x) {
+  return x.is_neg() && !x.is_zero();
+}
 
 template <int W, int I, sc_dt::sc_q_mode Q, sc_dt::sc_o_mode O, int N>
 sc_dt::sc_fixed<W, I, Q, O, N> shift_right(const sc_dt::sc_fixed<W, I, Q, O, N>& x, int n) {

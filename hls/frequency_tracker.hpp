@@ -8,7 +8,8 @@
 // out      frequency Q17.29 in nominal Hz, once in 25 ticks; sum of 50 amplitudes and of 50 phase errors
 // delay    centre of an output: 29 ticks less one sample before it is emitted
 // rounding phase cut to 2^-32 turns; nothing is lost between outputs: their sum is the phase. Words wrap
-// source   docs/chain.md; Lambda counters: S. Johansson, New frequency counting principle improves resolution, 2005
+// source   docs/chain.md; Lambda counters: S. Johansson, New frequency counting principle improves
+// resolution, 2005
 #ifndef HEMI_HLS_FREQUENCY_TRACKER_HPP
 #define HEMI_HLS_FREQUENCY_TRACKER_HPP
 

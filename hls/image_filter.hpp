@@ -25,7 +25,8 @@ class ImageFilter {
     using Tap = Fixed<7, 7>;
     using Sum = Fixed<config::baseband.width + 8, 9>;
     Sum sum = quantise<Sum>(input * from_raw<Tap>(config::image_taps[0]));
-    for (int i = 0; i < 4; ++i) sum = wrap_add(sum, quantise<Sum>(history_[i] * from_raw<Tap>(config::image_taps[i + 1])));
+    for (int i = 0; i < 4; ++i)
+      sum = wrap_add(sum, quantise<Sum>(history_[i] * from_raw<Tap>(config::image_taps[i + 1])));
     for (int i = 3; i > 0; --i) history_[i] = history_[i - 1];
     history_[0] = input;
     return quantise<Baseband>(quantise<Rounded<config::baseband>>(scale<-config::image_shift>(sum)));

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// phase_detector: amplitude and phase of the primary by CORDIC vectoring; the secondary rotated by the demodulation phase.
+// phase_detector: amplitude and phase of the primary by CORDIC vectoring; the secondary rotated by the
+// demodulation phase.
 //
-//   amplitude = K |I + jQ|, phase_error = atan2(Q, I) / (2 pi);  in_phase + j quadrature = (yi + j yq) e^{-j demodulation}
+//   amplitude = K |I + jQ|, phase_error = atan2(Q, I) / (2 pi);  in_phase + j quadrature = (yi + j yq) e^{-j
+//   demodulation}
 //
 // in       baseband Q1.27; cosine and sine of the demodulation phase Q2.22
 // out      amplitude Q2.32 with K = prod sqrt(1 + 4^-i) = 1.6468; phase error in turns Q0.32; secondary Q1.27
 // latency  within the tick
-// rounding CORDIC shifts floor, 24 iterations: angle within 2^-23 rad; the angle wraps at half a turn; the secondary rounds half up and clips
-// source   J. E. Volder, The CORDIC trigonometric computing technique, 1959
+// rounding CORDIC shifts floor, 24 iterations: angle within 2^-23 rad; the angle wraps at half a turn; the
+// secondary rounds half up and clips source   J. E. Volder, The CORDIC trigonometric computing technique,
+// 1959
 #ifndef HEMI_HLS_PHASE_DETECTOR_HPP
 #define HEMI_HLS_PHASE_DETECTOR_HPP
 
@@ -49,7 +52,8 @@ struct PhaseDetector {
     return {x, z};
   }
 
-  static Secondary rotate(const Baseband& i, const Baseband& q, const RegisterWord<config::reg_demodulation_cos>& c,
+  static Secondary rotate(const Baseband& i, const Baseband& q,
+                          const RegisterWord<config::reg_demodulation_cos>& c,
                           const RegisterWord<config::reg_demodulation_sin>& s, bool& saturated) {
     return {clip<Baseband, Clipped<config::baseband>>(i * c + q * s, saturated),
             clip<Baseband, Clipped<config::baseband>>(q * c - i * s, saturated)};

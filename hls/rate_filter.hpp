@@ -2,12 +2,14 @@
 //
 // rate_filter: the rate of each tick to the output rate, with the same triangular weights as the frequency.
 //
-//   rate = sum over 49 ticks of w_j gain in_phase_j, w = 1..25..1;  H(f) = (sin(25 pi f/fl) / (25 sin(pi f/fl)))^2
+//   rate = sum over 49 ticks of w_j gain in_phase_j, w = 1..25..1;  H(f) = (sin(25 pi f/fl) / (25 sin(pi
+//   f/fl)))^2
 //
 // in       secondary in phase Q1.27; gain Q11.13 in deg/h / 625
 // out      rate Q20.16 deg/h; -3 dB at 64 Hz, zeros at multiples of 200 Hz
 // delay    24 ticks
-// rounding tick half up to 2^-26 and clipped (flag); accumulators wrap, the combs undo it; output half up and clipped (flag)
+// rounding tick half up to 2^-26 and clipped (flag); accumulators wrap, the combs undo it; output half up and
+// clipped (flag)
 #ifndef HEMI_HLS_RATE_FILTER_HPP
 #define HEMI_HLS_RATE_FILTER_HPP
 

@@ -2,15 +2,18 @@
 //
 // reference_phase_loop: steers the nco onto the primary; lock detector, hold-over, re-acquisition.
 //
-//   increment = integral + kp e,  integral += ki e  (and += kf (e - e_last) while unlocked), e = phase error in turns
+//   increment = integral + kp e,  integral += ki e  (and += kf (e - e_last) while unlocked), e = phase error
+//   in turns
 //
 // in       phase error Q0.32 turns, amplitude Q2.32; gains Q-6.30 (kp, kf), Q-16.40 (ki)
 // out      increment Q1.48 turns a sample, in force one tick later
 // latency  one tick
 // rounding products half up to 2^-48; integral and increment clip (flag)
-// lock     lock_count ticks with |e| < 1/16 turn, each tick outside costs 4; lost when the count is back at 0.
+// lock     lock_count ticks with |e| < 1/16 turn, each tick outside costs 4; lost when the count is back at
+// 0.
 //          Below the amplitude threshold nothing moves (hold-over).
-// source   F. M. Gardner, Phaselock Techniques, 3rd ed., ch. 2 (type 2 loop); kf: e - e_last is the frequency error without ambiguity
+// source   F. M. Gardner, Phaselock Techniques, 3rd ed., ch. 2 (type 2 loop); kf: e - e_last is the frequency
+// error without ambiguity
 #ifndef HEMI_HLS_REFERENCE_PHASE_LOOP_HPP
 #define HEMI_HLS_REFERENCE_PHASE_LOOP_HPP
 

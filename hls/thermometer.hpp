@@ -26,7 +26,8 @@ Word<F> horner(const Word<F>& factor, const X& x, const Word<F>& addend, bool& s
 }
 
 struct Thermometer {
-  using Difference = Fixed<config::frequency.width + 1, config::frequency.width + 1 - config::frequency.fraction>;
+  using Difference =
+      Fixed<config::frequency.width + 1, config::frequency.width + 1 - config::frequency.fraction>;
 
   static Difference difference(const Frequency& frequency, const Registers& r) {
     return quantise<Difference>(frequency - r.frequency_reference);

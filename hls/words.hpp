@@ -24,9 +24,8 @@ using Rounded = Fixed<F.width, F.width - F.fraction, Round::half_up>;
 template <const config::Format& F>
 using Clipped = Fixed<F.width, F.width - F.fraction, Round::half_up, Overflow::saturate>;
 template <int Index>
-using RegisterWord =
-    Fixed<config::registers[Index].format.width,
-          config::registers[Index].format.width - config::registers[Index].format.fraction>;
+using RegisterWord = Fixed<config::registers[Index].format.width,
+                           config::registers[Index].format.width - config::registers[Index].format.fraction>;
 
 using Phase = Word<config::phase>;
 using Increment = Word<config::increment>;

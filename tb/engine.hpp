@@ -51,7 +51,8 @@ class Engine {
   virtual void reset(const RegisterValues& values) = 0;
   /// Feeds sample pairs in at the ADC.
   virtual void samples(std::span<const SamplePair> input, std::vector<Record>& output) = 0;
-  /// Feeds one telemetry sample in behind the tracker: frequency [nominal Hz], rate [deg/h]; appends one record.
+  /// Feeds one telemetry sample in behind the tracker: frequency [nominal Hz], rate [deg/h]; appends one
+  /// record.
   virtual void telemetry(double frequency_hz, double rate_dph, bool valid, std::vector<Record>& output) = 0;
   /// Taps from now on go to `sink`; nullptr for none. Engines without taps ignore it.
   virtual void set_taps(TapSink* sink) = 0;

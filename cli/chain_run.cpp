@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/chain_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "cli/output.hpp"
+#include "cli/recording/interrupt.hpp"
+#include "cli/recording/progress.hpp"
+
+namespace hemi::cli {
+namespace {
+
+constexpr std::size_t samples_a_chunk = 20000;
+constexpr std::size_t rows_a_chunk = 4096;
+
+}  // namespace
+
+std::vector<tb::SamplePair> sample_pairs(const recording::RawCapture& capture) {
+  std::vector<tb::SamplePair> pairs(capture.adc_x.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = {capture.adc_x[i], capture.adc_y[i], false};
+  for (const auto& gap : capture.gaps) {
+    if (gap.after_row + 1 < pairs.size()) pairs[gap.after_row + 1].gap = true;
+  }
+  return pairs;
+}
+
+TelemetryInput telemetry_input(const recording::Recording& recording,
+                               const recording::InstrumentModel& model) {
+  TelemetryInput input;
+  input.sample_rate_hz = recording.sample_rate_hz;
+  input.time_s = recording.require("time_s", "the output");
+  input.notes = recording.notes;
+  const auto* frequency = recording.find("frequency_hz");
+  const auto& rate = recording.require("rate_dph", "compensation");
+  std::vector<double> stand_in;
+  if (frequency == nullptr) {
+    const auto& degc = recording.require("case_temp_degc", "a stand-in for frequency_hz");
+    for (const double t : degc) {
+      double f = 0.0;
+      const auto& c = model.frequency->coefficients_hz;
+      for (auto k = c.rbegin(); k != c.rend(); ++k) f = f * (t - model.frequency->reference_degc) + *k;
+      stand_in.push_back(f);
+    }
+    input.notes.push_back("no frequency_hz in the recording: f(T) of case_temp_degc stands in for it");
+  }
+  const std::vector<double>& f = frequency != nullptr ? frequency->values : stand_in;
+  std::set<std::size_t> after_gap;
+  for (const auto& gap : recording.gaps) after_gap.insert(gap.after_row + 1);
+  const auto first = std::find_if(f.begin(), f.end(), [](double v) { return !std::isnan(v); });
+  double last = first != f.end() ? *first : 0.0;
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    if (!std::isnan(f[i])) last = f[i];
+    input.frequency_hz.push_back(last);
+    input.frequency_valid.push_back(!std::isnan(f[i]) && after_gap.count(i) == 0);
+    input.rate_dph.push_back(std::isnan(rate[i]) ? 0.0 : rate[i]);
+    input.rate_valid.push_back(!std::isnan(rate[i]));
+  }
+  return input;
+}
+
+std::vector<tb::Record> run_samples(tb::Engine& engine, const std::vector<tb::SamplePair>& pairs) {
+  std::vector<tb::Record> records;
+  recording::Progress progress(engine.name(), static_cast<double>(pairs.size()));
+  for (std::size_t i = 0; i < pairs.size(); i += samples_a_chunk) {
+    const std::size_t n = std::min(samples_a_chunk, pairs.size() - i);
+    engine.samples({pairs.data() + i, n}, records);
+    progress.update(static_cast<double>(i + n));
+    recording::check_interrupt();
+  }
+  return records;
+}
+
+std::vector<tb::Record> run_telemetry(tb::Engine& engine, const TelemetryInput& input, const Setup& setup) {
+  std::vector<tb::Record> records;
+  recording::Progress progress(engine.name(), static_cast<double>(input.time_s.size()));
+  for (std::size_t i = 0; i < input.time_s.size(); ++i) {
+    engine.telemetry(input.frequency_hz[i] * setup.rate_ratio, input.rate_dph[i], input.frequency_valid[i],
+                     records);
+    if (i % rows_a_chunk != 0) continue;
+    progress.update(static_cast<double>(i));
+    recording::check_interrupt();
+  }
+  return records;
+}
+
+recording::Recording telemetry_output(const std::vector<tb::Record>& records, const TelemetryInput& input,
+                                      const Setup& setup) {
+  recording::Recording out = to_recording(records, input.time_s, setup, true);
+  for (auto& channel : out.channels) {
+    if (channel.name != "rate_dph" && channel.name != "compensated_rate_dph") continue;
+    for (std::size_t i = 0; i < channel.values.size(); ++i) {
+      if (!input.rate_valid[i]) channel.values[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return out;
+}
+
+}  // namespace hemi::cli

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recordings through one engine: what run, compare and calibrate share.
+#ifndef HEMI_CLI_CHAIN_RUN_HPP
+#define HEMI_CLI_CHAIN_RUN_HPP
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/recording/raw_capture.hpp"
+#include "cli/recording/recording.hpp"
+#include "cli/settings.hpp"
+#include "tb/engine.hpp"
+
+namespace hemi::cli {
+
+/// A capture as sample pairs, gap flags included.
+std::vector<tb::SamplePair> sample_pairs(const recording::RawCapture& capture);
+
+/// Telemetry as the core takes it: one entry a row.
+struct TelemetryInput {
+  std::vector<double> time_s;
+  std::vector<double> frequency_hz;   ///< the last good value where the recording has none
+  std::vector<double> rate_dph;       ///< 0 where the recording has none
+  std::vector<bool> frequency_valid;  ///< false for missing values and right after a gap
+  std::vector<bool> rate_valid;
+  double sample_rate_hz = 0.0;
+  std::vector<std::string> notes;
+};
+
+/// frequency_hz and rate_dph; f(T) of the case stands in for a frequency that was not recorded (with a note).
+TelemetryInput telemetry_input(const recording::Recording& recording,
+                               const recording::InstrumentModel& model);
+
+/// Feeds all pairs, with progress and Ctrl-C; records come back in order.
+std::vector<tb::Record> run_samples(tb::Engine& engine, const std::vector<tb::SamplePair>& pairs);
+std::vector<tb::Record> run_telemetry(tb::Engine& engine, const TelemetryInput& input, const Setup& setup);
+
+/// Output of a telemetry run as a recording; NaN where the input was missing.
+recording::Recording telemetry_output(const std::vector<tb::Record>& records, const TelemetryInput& input,
+                                      const Setup& setup);
+
+}  // namespace hemi::cli
+
+#endif  // HEMI_CLI_CHAIN_RUN_HPP

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/output.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace hemi::cli {
+namespace {
+
+// Amplitude 1 in recordings is the nominal set point, 0.8 of the ADC's full scale.
+constexpr double nominal_amplitude = 0.8;
+constexpr double ticks_averaged = 2.0 * config::ticks_per_output;
+
+}  // namespace
+
+double full_scale_amplitude(const Sampling& sampling) {
+  double cordic_gain = 1.0;
+  for (int i = 0; i < config::cordic_iterations; ++i) cordic_gain *= std::sqrt(1.0 + std::ldexp(1.0, -2 * i));
+  double taps = 0.0;
+  for (const int tap : config::image_taps) taps += tap;
+  const double cic = std::pow(sampling.decimation, config::cic_order) /
+                     std::ldexp(1.0, config::growth_bits(sampling.decimation, config::cic_order));
+  return 0.5 * cordic_gain * cic * std::ldexp(taps, -config::image_shift) *
+         std::ldexp(config::table_scale, -20);
+}
+
+double output_time_s(std::size_t output, const Setup& setup) {
+  const double ticks = static_cast<double>(output) * config::ticks_per_output - 4.0;
+  return ticks / config::ticks_per_output * setup.output_period_s;
+}
+
+recording::Recording to_recording(const std::vector<tb::Record>& records, const std::vector<double>& time_s,
+                                  const Setup& setup, bool telemetry) {
+  const double amplitude_scale =
+      1.0 / (ticks_averaged * full_scale_amplitude(sampling(setup.wide)) * nominal_amplitude);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  recording::Recording out;
+  out.sample_rate_hz = 1.0 / setup.output_period_s;
+  out.channels = {{"time_s", "s", time_s}};
+  auto add = [&](const char* name, const char* unit, auto value) {
+    recording::Channel channel{name, unit, {}};
+    channel.values.reserve(records.size());
+    for (const tb::Record& record : records) channel.values.push_back(value(record.words));
+    out.channels.push_back(std::move(channel));
+  };
+  using Words = decltype(tb::Record::words);
+  add("frequency_hz", "Hz", [&](const Words& w) { return w[config::word_frequency] / setup.rate_ratio; });
+  add("temperature_degc", "degC",
+      [&](const Words& w) { return setup.has_thermometer ? w[config::word_temperature] : none; });
+  add("dfdt_hz_per_s", "Hz/s",
+      [&](const Words& w) { return w[config::word_derivative] * derivative_full_scale_hz_per_s; });
+  add("amplitude", "1",
+      [&](const Words& w) { return telemetry ? none : w[config::word_amplitude] * amplitude_scale; });
+  add("phase_error_turns", "turn",
+      [&](const Words& w) { return telemetry ? none : w[config::word_phase_error] / ticks_averaged; });
+  add("bias_dph", "deg/h", [](const Words& w) { return w[config::word_bias]; });
+  add("rate_dph", "deg/h", [](const Words& w) { return w[config::word_rate]; });
+  add("compensated_rate_dph", "deg/h", [](const Words& w) { return w[config::word_compensated]; });
+  add("status", "1", [](const Words& w) { return w[config::word_status]; });
+  return out;
+}
+
+}  // namespace hemi::cli

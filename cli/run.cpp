@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "cli/chain_run.hpp"
+#include "cli/commands.hpp"
+#include "cli/engines.hpp"
+#include "cli/output.hpp"
+#include "cli/recording/error.hpp"
+#include "cli/recording/write.hpp"
+#include "cli/summary.hpp"
+
+namespace hemi::cli {
+namespace {
+
+struct RunOptions {
+  std::string recording;
+  std::string engine = "hls";
+  std::string model;
+  std::string output;
+  std::optional<double> frequency_hz;
+  std::optional<double> window_s;
+  std::optional<double> adc_rate_hz;
+  double from_s = 0.0;
+  double to_s = std::numeric_limits<double>::infinity();
+  bool json = false;
+};
+
+void print_notes(const std::vector<std::string>& notes) {
+  for (const auto& note : notes) fmt::print(stderr, "note: {}\n", note);
+}
+
+void print_gaps(const std::vector<recording::Gap>& gaps) {
+  for (const auto& gap : gaps) {
+    fmt::print(stderr, "note: gap of {} samples between {} s and {} s\n", gap.missing_samples, gap.start_s,
+               gap.end_s);
+  }
+}
+
+recording::Recording with_provenance(recording::Recording out, const RunOptions& options,
+                                     const std::string& device) {
+  out.device = device;
+  out.sidecar["engine"] = options.engine;
+  out.sidecar["source"] = options.recording;
+  if (!options.model.empty()) out.sidecar["model"] = options.model;
+  out.sidecar["compensated"] = !options.model.empty();
+  return out;
+}
+
+void finish(const recording::Recording& out, const RunOptions& options, recording::Json summary,
+            const std::string& text) {
+  if (!options.output.empty()) recording::write_file(options.output, out);
+  if (options.json) {
+    summary["engine"] = options.engine;
+    if (!options.output.empty()) summary["output"] = options.output;
+    fmt::print("{}\n", summary.dump(2));
+  } else {
+    fmt::print("{}", text);
+    if (!options.output.empty()) fmt::print("wrote {}\n", options.output);
+  }
+}
+
+int run_capture(const RunOptions& options, const std::optional<recording::InstrumentModel>& model) {
+  recording::RawOptions raw;
+  raw.sample_rate_hz = options.adc_rate_hz;
+  const auto capture = recording::read_raw_capture(options.recording, raw);
+  print_notes(capture.notes);
+  print_gaps(capture.gaps);
+  const Setup setup =
+      capture_setup(capture, model ? &*model : nullptr, options.frequency_hz, options.window_s);
+  print_notes(setup.notes);
+  const auto engine = make_engine(options.engine, setup.wide);
+  engine->reset(setup.values);
+  const auto records = run_samples(*engine, sample_pairs(capture));
+  std::vector<double> time_s(records.size());
+  for (std::size_t i = 0; i < records.size(); ++i) time_s[i] = output_time_s(i, setup);
+  const auto out = with_provenance(to_recording(records, time_s, setup, false), options, capture.device);
+  const RunSummary summary = summarise_capture(out, options.from_s, options.to_s);
+  finish(out, options, to_json(summary),
+         fmt::format("{}: {} sample pairs, {} outputs at {:.6g} Hz\n{}", options.engine, capture.adc_x.size(),
+                     records.size(), 1.0 / setup.output_period_s, to_text(summary)));
+  return exit_good;
+}
+
+/// Standard deviation of the values that are there.
+double deviation(const std::vector<double>& values) {
+  double n = 0, mean = 0, square = 0;
+  for (const double v : values) {
+    if (std::isnan(v)) continue;
+    n += 1;
+    const double d = v - mean;
+    mean += d / n;
+    square += d * (v - mean);
+  }
+  return n > 1 ? std::sqrt(square / (n - 1)) : 0.0;
+}
+
+int run_recording(const RunOptions& options, const std::optional<recording::InstrumentModel>& model) {
+  if (!model) {
+    throw recording::InputError({options.recording},
+                                "telemetry is compensated with an instrument model, and none is given",
+                                "give --model M.model.json; hemi calibrate makes one");
+  }
+  const auto recording = recording::read_recording(options.recording);
+  const Setup setup = telemetry_setup(recording.sample_rate_hz, *model, options.window_s);
+  const TelemetryInput input = telemetry_input(recording, *model);
+  print_notes(input.notes);
+  print_gaps(recording.gaps);
+  const auto engine = make_engine(options.engine, setup.wide);
+  engine->reset(setup.values);
+  const auto records = run_telemetry(*engine, input, setup);
+  const auto out = with_provenance(telemetry_output(records, input, setup), options, recording.device);
+  const double before = deviation(out.find("rate_dph")->values);
+  const double after = deviation(out.find("compensated_rate_dph")->values);
+  recording::Json summary;
+  summary["rows"] = records.size();
+  summary["rate_deviation_dph"] = before;
+  summary["compensated_deviation_dph"] = after;
+  summary["derivative_window_s"] = setup.derivative_window_s;
+  summary["thermometer_error_degc"] = setup.thermometer_error_degc;
+  finish(out, options, summary,
+         fmt::format("{}: {} rows; standard deviation of the rate {:.6g} deg/h, compensated {:.6g} deg/h\n"
+                     "df/dt over {:.4g} s; thermometer polynomial within {:.2g} degC of f(T)\n",
+                     options.engine, records.size(), before, after, setup.derivative_window_s,
+                     setup.thermometer_error_degc));
+  return exit_good;
+}
+
+int run(const RunOptions& options) {
+  std::optional<recording::InstrumentModel> model;
+  if (!options.model.empty()) model = recording::read_model(options.model);
+  if (recording::is_raw(options.recording)) return run_capture(options, model);
+  return run_recording(options, model);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Job& job) {
+  auto options = std::make_shared<RunOptions>();
+  auto* command =
+      app.add_subcommand("run", "A recording through one engine: frequency, temperature, compensated rate");
+  command
+      ->add_option("recording", options->recording,
+                   "raw capture (adc_x, adc_y; CSV, HDF5, WAV, FLAC) or telemetry (frequency_hz, rate_dph)")
+      ->required();
+  command->add_option("-e,--engine", options->engine, "ideal, golden, hls, rtl or systemc")
+      ->capture_default_str();
+  command->add_option("-m,--model", options->model, "instrument model (hemi-model/1)");
+  command->add_option("-o,--output", options->output, "output: .csv, or .h5 for HDF5");
+  command->add_option("-f,--frequency", options->frequency_hz,
+                      "where the nco starts [Hz]; default: the model's at 20 degC");
+  command->add_option("--window", options->window_s, "window of df/dt [s], about; default 20");
+  command->add_option("--adc-rate", options->adc_rate_hz,
+                      "ADC rate of a capture that does not say it [samples/s]");
+  command->add_option("--from", options->from_s, "start of the stretch that the summary speaks of [s]");
+  command->add_option("--to", options->to_s, "end of it [s]");
+  command->add_flag("--json", options->json, "summary as JSON");
+  command->footer("Example: hemi run bell.wav --engine rtl --frequency 3621 --from 0.5 --to 2.5 -o bell.csv");
+  command->callback([options, &job] { job = [options] { return run(*options); }; });
+}
+
+}  // namespace hemi::cli

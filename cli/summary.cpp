@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "hls/config.hpp"
+
+namespace hemi::cli {
+namespace {
+
+constexpr std::uint64_t bit(config::StatusBit b) {
+  return std::uint64_t{1} << b;
+}
+constexpr std::uint64_t unusable =
+    bit(config::status_unlocked) | bit(config::status_holdover) | bit(config::status_frequency_invalid);
+
+/// Line through log amplitude, weighted with the squared amplitude (additive noise); outputs overlap by half,
+/// so a scatter of n outputs counts as n / 2.
+void fit_decay(const std::vector<double>& t, const std::vector<double>& a, RunSummary& s) {
+  double w0 = 0, wt = 0, wy = 0;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double w = a[i] * a[i];
+    w0 += w;
+    wt += w * t[i];
+    wy += w * std::log(a[i]);
+  }
+  double tt = 0, ty = 0;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double w = a[i] * a[i];
+    tt += w * (t[i] - wt / w0) * (t[i] - wt / w0);
+    ty += w * (t[i] - wt / w0) * (std::log(a[i]) - wy / w0);
+  }
+  const double slope = ty / tt;
+  double scatter = 0;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double residual = std::log(a[i]) - wy / w0 - slope * (t[i] - wt / w0);
+    scatter += a[i] * a[i] * residual * residual;
+  }
+  const double error = std::sqrt(scatter / tt / (0.5 * static_cast<double>(t.size())));
+  if (!(slope < -3.0 * error)) return;
+  s.damping_time_s = -1.0 / slope;
+  s.quality_factor = std::numbers::pi * s.frequency_hz * *s.damping_time_s;
+  s.quality_factor_error = *s.quality_factor * error / -slope;
+}
+
+double mean(const std::vector<double>& v, std::size_t begin, std::size_t end) {
+  double sum = 0;
+  for (std::size_t i = begin; i < end; ++i) sum += v[i];
+  return sum / static_cast<double>(end - begin);
+}
+
+}  // namespace
+
+RunSummary summarise_capture(const recording::Recording& output, double from_s, double to_s) {
+  const auto& time = output.find("time_s")->values;
+  const auto& frequency = output.find("frequency_hz")->values;
+  const auto& amplitude = output.find("amplitude")->values;
+  const auto& status = output.find("status")->values;
+  RunSummary s;
+  std::vector<double> t, f, a;
+  std::size_t window = 0;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    if (time[i] < from_s || time[i] > to_s) continue;
+    ++window;
+    if ((static_cast<std::uint64_t>(status[i]) & unusable) != 0 || !(amplitude[i] > 0)) continue;
+    t.push_back(time[i]);
+    f.push_back(frequency[i]);
+    a.push_back(amplitude[i]);
+  }
+  s.outputs = t.size();
+  s.locked_share = window > 0 ? static_cast<double>(t.size()) / static_cast<double>(window) : 0.0;
+  if (t.size() < 20) return s;
+  const std::size_t tenth = t.size() / 10;
+  s.first_s = t.front();
+  s.last_s = t.back();
+  double weight = 0;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    s.frequency_hz += a[i] * a[i] * f[i];
+    weight += a[i] * a[i];
+  }
+  s.frequency_hz /= weight;
+  s.start_hz = mean(f, 0, tenth);
+  s.end_hz = mean(f, t.size() - tenth, t.size());
+  s.drift_ppm = (s.end_hz / s.start_hz - 1.0) * 1e6;
+  s.start_amplitude = mean(a, 0, tenth);
+  s.end_amplitude = mean(a, t.size() - tenth, t.size());
+  fit_decay(t, a, s);
+  return s;
+}
+
+std::string to_text(const RunSummary& s) {
+  if (s.frequency_hz == 0.0) {
+    return "not locked: fewer than 20 usable outputs; give --frequency within a few Hz of the resonator\n";
+  }
+  std::string text = fmt::format("locked for {:.1f} % of the window; {} outputs from {:.3f} s to {:.3f} s\n",
+                                 100.0 * s.locked_share, s.outputs, s.first_s, s.last_s);
+  text += fmt::format("frequency  {:.6f} Hz, from {:.6f} to {:.6f} Hz ({:+.2f} ppm)\n", s.frequency_hz,
+                      s.start_hz, s.end_hz, s.drift_ppm);
+  text += fmt::format("amplitude  {:.6f} to {:.6f} (1 = 0.8 of full scale)\n", s.start_amplitude,
+                      s.end_amplitude);
+  if (s.quality_factor) {
+    text += fmt::format("quality factor {:.0f} +- {:.0f}, damping time {:.4f} s\n", *s.quality_factor,
+                        *s.quality_factor_error, *s.damping_time_s);
+  }
+  return text;
+}
+
+recording::Json to_json(const RunSummary& s) {
+  recording::Json json;
+  json["outputs"] = s.outputs;
+  json["locked_share"] = s.locked_share;
+  json["time_s"] = {s.first_s, s.last_s};
+  json["frequency_hz"] = s.frequency_hz;
+  json["start_hz"] = s.start_hz;
+  json["end_hz"] = s.end_hz;
+  json["drift_ppm"] = s.drift_ppm;
+  json["amplitude"] = {s.start_amplitude, s.end_amplitude};
+  if (s.quality_factor) {
+    json["damping_time_s"] = *s.damping_time_s;
+    json["quality_factor"] = *s.quality_factor;
+    json["quality_factor_error"] = *s.quality_factor_error;
+  }
+  return json;
+}
+
+}  // namespace hemi::cli

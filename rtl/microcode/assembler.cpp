@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rtl/microcode/assembler.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace hemi::microcode {
+namespace {
+
+/// Modes have 4 bits in an instruction.
+constexpr std::size_t max_modes = 16;
+
+std::vector<Mode> all_modes(int cic_bits) {
+  std::vector<Mode> modes = {{word_bits, false},
+                             {cic_bits, false},
+                             {config::phase.width, false},
+                             {config::angle.width, false},
+                             {config::tick_phase.width, false},
+                             {config::total_phase.width, false},
+                             {config::rate_accumulator.width, false},
+                             {config::block_sum.width, false},
+                             {config::increment.width, true},
+                             {config::baseband.width, true},
+                             {config::rate_tick.width, true},
+                             {config::rate.width, true},
+                             {config::offset.width, true},
+                             {config::fine_offset.width, true},
+                             {config::bias.width, true}};
+  std::sort(modes.begin() + 1, modes.end());
+  modes.erase(std::unique(modes.begin(), modes.end()), modes.end());
+  return modes;
+}
+
+}  // namespace
+
+Assembler::Assembler(Instrument instrument)
+    : instrument_(std::move(instrument)),
+      modes_(all_modes(instrument_.cic_bits)),
+      next_word_(config::register_count),
+      next_constant_(port_base - 1) {
+  static_assert(config::offset.width == config::derivative.width && config::bias.width == config::temperature.width &&
+                    config::bias.width == config::slope_word.width && config::total_phase.width == config::frequency.width,
+                "formats that share a mode");
+  if (modes_.size() > max_modes) throw std::logic_error("more modes than an instruction can name");
+}
+
+Word Assembler::word(const std::string& name) {
+  const auto [place, created] = words_.try_emplace(name, Word{next_word_});
+  if (created && next_word_++ >= next_constant_) throw std::logic_error("state memory is full");
+  return place->second;
+}
+
+Word Assembler::constant(std::int64_t value) {
+  const auto [place, created] = constants_.try_emplace(value, Word{next_constant_});
+  if (created && next_constant_-- <= next_word_) throw std::logic_error("state memory is full");
+  return place->second;
+}
+
+Region& Assembler::region(const std::string& label) {
+  Region& region = regions_.emplace_back();
+  region.label = label;
+  return region;
+}
+
+Word Assembler::product(Word wide, Word narrow) {
+  line(Operation::multiply, nowhere(), wide, narrow).condition = Condition::never;
+  return product_port;
+}
+
+Instruction& Assembler::look_up(Word dst, Word phase, bool cosine) {
+  Instruction& angle = line(Operation::look_up, nowhere(), phase, zero());
+  angle.condition = Condition::never;
+  angle.shift = cosine ? 1 : 0;
+  return line(Operation::mirror, dst, zero(), lookup_port);
+}
+
+int Assembler::mode_code(Mode mode) const {
+  const auto place = std::find(modes_.begin(), modes_.end(), mode);
+  if (place == modes_.end()) throw std::logic_error("no such mode: " + std::to_string(mode.width) + " bits");
+  return static_cast<int>(place - modes_.begin());
+}
+
+std::string Assembler::name_of(Word word) const {
+  static const std::map<int, std::string> ports = {
+      {product_port.address, "product"},   {lookup_port.address, "looked_up"}, {sample_x_port.address, "sample_x"},
+      {sample_y_port.address, "sample_y"}, {gap_port.address, "gap"},          {live_port.address, "live"}};
+  if (word.address < config::register_count) return config::registers[word.address].name;
+  if (const auto port = ports.find(word.address); port != ports.end()) return port->second;
+  for (const auto& [name, place] : words_) {
+    if (place == word) return name;
+  }
+  for (const auto& [value, place] : constants_) {
+    if (place == word) return "#" + std::to_string(value);
+  }
+  throw std::logic_error("no word at address " + std::to_string(word.address));
+}
+
+Instruction& Assembler::line(Operation operation, Word dst, Word a, Word b) {
+  if (regions_.empty()) throw std::logic_error("an instruction outside any region");
+  Instruction& instruction = regions_.back().lines.emplace_back();
+  instruction.operation = operation;
+  instruction.dst = dst;
+  instruction.a = a;
+  instruction.b = b;
+  instruction.block = block_;
+  return instruction;
+}
+
+}  // namespace hemi::microcode

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// GoogleTest's main for programs that link SystemC for its data types alone. SystemC's library brings a
+// main of its own, which would win over gtest_main's, never run a test and need an sc_main.
+#include <gtest/gtest.h>
+
+extern "C" int sc_main(int, char**) {
+  return 0;
+}
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
