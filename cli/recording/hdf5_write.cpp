@@ -64,11 +64,11 @@ bool write_dataset(hid_t group, const Hdf5Output& output) {
 // The bytes of the file as the library holds them, without a copy.
 std::string_view image(hid_t file, const std::string& path) {
   void* handle = nullptr;
-  haddr_t size = 0;
-  if (H5Fflush(file, H5F_SCOPE_GLOBAL) < 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0 ||
-      H5Fget_eoa(file, &size) < 0) {
+  if (H5Fflush(file, H5F_SCOPE_GLOBAL) < 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0) {
     refuse(path, "the file");
   }
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);  // no buffer: tells the size
+  if (size <= 0) refuse(path, "the file");
   return {*static_cast<const char* const*>(handle), static_cast<std::size_t>(size)};
 }
 

@@ -54,7 +54,7 @@ void note_clock(const Clock& clock, Recording& recording) {
 }
 
 // The clock of the file where there is one, otherwise one made from the stated rate.
-void set_time(const Table& table, const Sidecar& sidecar, Recording& recording) {
+void set_time(const Table& table, std::size_t rows, const Sidecar& sidecar, Recording& recording) {
   const double stated_hz = stated_rate(table.metadata, sidecar.exists ? sidecar.path : table.path);
   const Channel* time = recording.find("time_s");
   if (time == nullptr) {
@@ -65,8 +65,7 @@ void set_time(const Table& table, const Sidecar& sidecar, Recording& recording) 
     }
     recording.time_from_rate = true;
     recording.sample_rate_hz = stated_hz;
-    recording.channels.insert(recording.channels.begin(),
-                              {"time_s", "s", time_from_rate(table.rows(), stated_hz)});
+    recording.channels.insert(recording.channels.begin(), {"time_s", "s", time_from_rate(rows, stated_hz)});
     return;
   }
   Clock clock = examine_clock(table, time->values);
@@ -118,8 +117,9 @@ Recording read_recording(const std::string& path) {
   recording.sidecar = table.metadata;
   recording.sidecar.erase("columns");
   recording.notes = table.notes;
+  const std::size_t rows = table.rows();
   take_channels(table, recording);
-  set_time(table, sidecar, recording);
+  set_time(table, rows, sidecar, recording);
   if (recording.channels.size() == 1 && table.columns.size() > 1) {
     throw InputError({.path = path}, "every value of every channel is missing", "record or export it again");
   }
