@@ -87,10 +87,24 @@ void set_thermometer(Setup& setup, const InstrumentModel& model, double referenc
     high = range[1];
   }
   const double span_hz = config::offset_span_hz / setup.rate_ratio;
-  const auto inverse = calibration::fit_inverse(
-      model.frequency->coefficients_hz, model.frequency->reference_degc, low, high, reference_hz, span_hz, 5);
-  for (std::size_t i = 0; i < inverse.coefficients_degc.size(); ++i) {
-    setup.values[config::reg_thermometer_0 + i] = inverse.coefficients_degc[i];
+  const auto& c = model.frequency->coefficients_hz;
+  if (c.size() < 2)
+    throw InputError({model.path, 0, 0, "frequency.coefficients_hz"}, "holds no slope",
+                     "give at least two coefficients");
+  const calibration::FrequencyPolynomial frequency(
+      Eigen::Map<const Eigen::VectorXd>(c.data(), static_cast<Eigen::Index>(c.size())),
+      model.frequency->reference_degc, low, high);
+  if (!frequency.monotone()) {
+    throw InputError(
+        {model.path, 0, 0, "frequency"},
+        fmt::format("f(T) turns round between {} and {} degC, so no frequency names one temperature", low,
+                    high),
+        "narrow frequency.calibrated_degc");
+  }
+  const auto inverse =
+      calibration::fit_inverse(frequency, reference_hz, calibration::kMaxInverseOrder, span_hz);
+  for (Eigen::Index i = 0; i < inverse.coefficients_degc.size(); ++i) {
+    setup.values[static_cast<std::size_t>(config::reg_thermometer_0 + i)] = inverse.coefficients_degc[i];
   }
   setup.thermometer_error_degc = inverse.max_error_degc;
   setup.has_thermometer = true;

@@ -16,7 +16,7 @@
 //   raw(x)             the word as a sign-extended std::int64_t
 //   from_raw<T>(n)     the number whose word is the low W bits of n
 //   is_negative(x)     x < 0
-//   shift_right(x, n)  floor(x * 2^n') with n' = -n on x's own grid, 0 <= n <= 63; type unchanged
+//   shift_right(x, n)  x * 2^-n, floored onto x's own grid and of its type; 0 <= n <= 63
 //   scale<N>(x)        x * 2^N exactly: the binary point moves, the word stays
 //   wrap_add(a, b)     a + b modulo the range of a, in a's type; b has no more fraction bits than a
 //   wrap_sub(a, b)     a - b likewise
@@ -28,7 +28,8 @@
 //   0  Fixed of fixed_own.hpp (default): plain 64-bit integer arithmetic
 //   1  ap_fixed (Vitis HLS)    2  ac_fixed (Catapult)    3  sc_fixed (SystemC)
 //
-// SystemC's expressions have no width of their own: quantise into a named type right after each.
+// A type that saturates symmetrically never holds -2^(W-1), and from_raw must not be given it: backends
+// differ there. SystemC's expressions have no width of their own: quantise into a named type right after each.
 // Constant expressions work with backend 0 only; tables are arrays of integers, read with from_raw.
 #ifndef HEMI_HLS_FIXED_HPP_
 #define HEMI_HLS_FIXED_HPP_

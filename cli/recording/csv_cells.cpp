@@ -45,6 +45,22 @@ CellResult parse_unusual(std::string_view text) {
   return {text.front() == '-' ? -value : value};
 }
 
+// Well-formed sequences of UTF-8; overlong forms pass, for nothing here depends on them.
+bool is_utf8(std::string_view text) {
+  int following = 0;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool continuation = (byte & 0xC0) == 0x80;
+    if (continuation != (following > 0) || byte >= 0xF8) return false;
+    if (continuation) {
+      --following;
+    } else {
+      following = byte < 0x80 ? 0 : byte < 0xE0 ? 1 : byte < 0xF0 ? 2 : 3;
+    }
+  }
+  return following == 0;
+}
+
 void check_bytes(std::string_view line, const Place& place) {
   if (line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF")) {
     throw InputError(place, "the text is UTF-16", "save it as UTF-8");
@@ -57,6 +73,10 @@ void check_bytes(std::string_view line, const Place& place) {
     throw InputError(
         place, "binary bytes where a line of channel names should stand",
         "give a comma-separated text file, or name HDF5 and sound files .h5, .mat, .wav or .flac");
+  }
+  if (!is_utf8(line)) {
+    throw InputError(place, "the header is not UTF-8 (a degree sign from another encoding?)",
+                     "save it as UTF-8");
   }
 }
 

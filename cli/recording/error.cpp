@@ -16,8 +16,8 @@ std::string describe(const Place& place) {
   std::string text = place.path;
   if (place.line > 0) text += fmt::format(":{}", place.line);
   if (place.row > 0) text += fmt::format(": row {}", place.row);
-  if (!place.channel.empty()) text += ": " + place.channel;
-  return text;
+  if (!place.channel.empty()) text += (text.empty() ? "" : ": ") + place.channel;
+  return text.empty() ? text : text + ": ";
 }
 
 std::string with_remedy(std::string_view problem, std::string_view remedy) {
@@ -27,7 +27,7 @@ std::string with_remedy(std::string_view problem, std::string_view remedy) {
 }  // namespace
 
 InputError::InputError(const Place& place, std::string_view problem, std::string_view remedy)
-    : std::runtime_error(describe(place) + ": " + with_remedy(problem, remedy)) {}
+    : std::runtime_error(describe(place) + with_remedy(problem, remedy)) {}
 
 OutputError::OutputError(const std::string& path, std::string_view problem, std::string_view remedy)
     : std::runtime_error(path + ": " + with_remedy(problem, remedy)) {}

@@ -113,11 +113,18 @@ bool write_attribute(hid_t object, const std::string& name, const Json& value) {
     const auto number = value.get<double>();
     return put(H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &number);
   }
-  const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  const std::string text = value.is_string() ? value.get<std::string>() : json_text(value);
   const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_cset(type, H5T_CSET_UTF8);
   H5Tset_size(type, text.size() + 1);
   return put(type, type, text.c_str());
+}
+
+bool is_backed(hid_t dataset) {
+  constexpr hsize_t kBestPacking = 1032;  // of deflate, by its format
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  const hssize_t count = H5Sget_simple_extent_npoints(space);
+  return count >= 0 && static_cast<hsize_t>(count) <= kBestPacking * H5Dget_storage_size(dataset);
 }
 
 bool is_matlab_text(hid_t dataset) {
@@ -125,6 +132,7 @@ bool is_matlab_text(hid_t dataset) {
 }
 
 std::string matlab_text(hid_t dataset) {
+  if (!is_backed(dataset)) return {};
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
   const auto count = std::max<hssize_t>(H5Sget_simple_extent_npoints(space), 0);
   std::vector<std::uint16_t> units(static_cast<std::size_t>(count));

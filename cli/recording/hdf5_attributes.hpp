@@ -18,6 +18,10 @@ Json read_attributes(hid_t object);
 /// The reverse of read_attribute; false where the library refuses.
 bool write_attribute(hid_t object, const std::string& name, const Json& value);
 
+/// False where a dataset claims more values than its bytes in the file can unpack to (damaged, or never
+/// written).
+bool is_backed(hid_t dataset);
+
 /// MATLAB stores text as a dataset of UTF-16 units with the attribute MATLAB_class = "char".
 bool is_matlab_text(hid_t dataset);
 std::string matlab_text(hid_t dataset);

@@ -27,10 +27,14 @@ class Hdf5Handle {
   Close close_;
 };
 
-/// Keeps the library from printing its error stack while the object lives: our message is the one line.
+/// Keeps the library from printing its error stack while the object lives: our message is the one line. Comes
+/// before any other use of the library.
 class Hdf5Silence {
  public:
   Hdf5Silence() {
+    // Damaged files leave objects that cannot be closed, and the library's clean-up at exit then complains on
+    // stderr. Nothing is left for it to write: files are only read, or live in memory.
+    [[maybe_unused]] static const herr_t no_clean_up_at_exit = H5dont_atexit();
     H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <fstream>
 #include <new>
 #include <optional>
+#include <stdexcept>
 
 #include "cli/recording/hdf5_attributes.hpp"
 #include "cli/recording/hdf5_file.hpp"
@@ -88,20 +88,16 @@ std::vector<double> read_values(hid_t dataset, const Place& place) {
                      "store one dataset a channel, or map it to null under \"columns\" in the sidecar");
   }
   check_interrupt();
-  try {
-    std::vector<double> values(*length);
-    if (*length > 0 &&
-        H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-      throw InputError(place,
-                       "cannot be read: damaged, cut off, or packed with a filter that is not installed",
-                       "copy or record it again");
-    }
-    return values;
-  } catch (const std::bad_alloc&) {
-  } catch (const std::length_error&) {
+  if (!is_backed(dataset)) {
+    throw InputError(place, fmt::format("claims {} values and stores none", *length),
+                     "the file is damaged, or was never completed: record it again");
   }
-  throw InputError(place, fmt::format("claims {} values, more than fit into memory", *length),
-                   "the file is damaged: copy or record it again");
+  std::vector<double> values(*length);
+  if (*length > 0 && H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+    throw InputError(place, "cannot be read: damaged, cut off, or packed with a filter that is not installed",
+                     "copy or record it again");
+  }
+  return values;
 }
 
 void read_member(hid_t parent, const std::string& path, const std::string& name,
@@ -136,9 +132,17 @@ Hdf5Group read_hdf5(const std::string& path, bool raw, const DatasetChooser& cho
   Hdf5Group result;
   if (raw && has_group(file, kRawGroup)) result.group = kRawGroup;
   const Hdf5Handle parent(H5Gopen2(file, result.group.empty() ? "/" : kRawGroup, H5P_DEFAULT), H5Gclose);
-  result.file_attributes = read_attributes(file);
-  if (!result.group.empty()) result.group_attributes = read_attributes(parent);
-  for (const std::string& name : member_names(parent)) read_member(parent, path, name, chooser, result);
+  try {
+    result.file_attributes = read_attributes(file);
+    if (!result.group.empty()) result.group_attributes = read_attributes(parent);
+    for (const std::string& name : member_names(parent)) read_member(parent, path, name, chooser, result);
+  } catch (const std::bad_alloc&) {
+    throw InputError({.path = path}, "claims more than fits into memory",
+                     "the file is damaged: record it again");
+  } catch (const std::length_error&) {
+    throw InputError({.path = path}, "claims more than fits into memory",
+                     "the file is damaged: record it again");
+  }
   return result;
 }
 

@@ -30,14 +30,18 @@ Json read_json_object(const std::string& path) {
   }
 }
 
+std::string json_text(const Json& value, int indent) {
+  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 double number_or(const Json& object, const char* key, double fallback, const std::string& path,
                  const std::string& context) {
   const auto found = object.find(key);
   if (found == object.end() || found->is_null()) return fallback;
   const std::string name = context.empty() ? key : context + "." + key;
   if (!found->is_number() || !std::isfinite(found->get<double>())) {
-    throw InputError({.path = path, .channel = name}, "expected a number, found " + in_quotes(found->dump()),
-                     "correct it");
+    throw InputError({.path = path, .channel = name},
+                     "expected a number, found " + in_quotes(json_text(*found)), "correct it");
   }
   return found->get<double>();
 }
@@ -46,7 +50,7 @@ std::string text_or_empty(const Json& object, const char* key, const std::string
   const auto found = object.find(key);
   if (found == object.end() || found->is_null()) return {};
   if (!found->is_string()) {
-    throw InputError({.path = path, .channel = key}, "expected text, found " + in_quotes(found->dump()),
+    throw InputError({.path = path, .channel = key}, "expected text, found " + in_quotes(json_text(*found)),
                      "put it into quotes");
   }
   return found->get<std::string>();

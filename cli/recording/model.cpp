@@ -194,7 +194,7 @@ Json to_json(const InstrumentModel& model) {
 }
 
 void write_model(const std::string& path, const InstrumentModel& model) {
-  write_text(path, to_json(model).dump(2) + "\n");
+  write_text(path, json_text(to_json(model), 2) + "\n");
 }
 
 }  // namespace hemi::recording

@@ -106,7 +106,7 @@ void write_pair(const std::string& path, const std::vector<Channel>& channels,
     return;
   }
   PartialFile beside(sidecar_path);
-  beside.write(sidecar.dump(2) + "\n");
+  beside.write(json_text(sidecar, 2) + "\n");
   data.finish();
   beside.finish();
   beside.commit();

@@ -146,8 +146,8 @@ Eigen::VectorXd minimise(const RestrictedLikelihood& likelihood, Eigen::VectorXd
   return theta;
 }
 
-// Inverse of half the Hessian of -2 log L. A direction in which the likelihood is flat is one in which the noise
-// is not known: it gets a variance of 1e4, which no test survives, instead of a negative one.
+// Inverse of half the Hessian of -2 log L. A direction in which the likelihood is flat is one in which the
+// noise is not known: it gets a variance of 1e4, which no test survives, instead of a negative one.
 Eigen::MatrixXd curvature_covariance(const RestrictedLikelihood& likelihood, const Eigen::VectorXd& at) {
   Eigen::VectorXd gradient;
   Eigen::MatrixXd hessian;
@@ -163,7 +163,9 @@ Eigen::VectorXd AutoregressiveNoise::coefficients() const {
   return durbin_levinson(partial).coefficients.back();
 }
 
-double AutoregressiveNoise::lag1_correlation() const { return partial.size() > 0 ? partial(0) : 0.0; }
+double AutoregressiveNoise::lag1_correlation() const {
+  return partial.size() > 0 ? partial(0) : 0.0;
+}
 
 double AutoregressiveNoise::effective_samples(Eigen::Index rows) const {
   const Predictors predictors = durbin_levinson(partial);

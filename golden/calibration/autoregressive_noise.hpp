@@ -8,9 +8,9 @@
 
 namespace hemi::calibration {
 
-/// Gaussian noise e_t = a_1 e_{t-1} + ... + a_p e_{t-p} + u_t, stationary, u white with variance s^2, independent
-/// between segments; held as its partial autocorrelations r_1..r_p, each inside (-1, 1), which map one to one onto
-/// the stationary a (Durbin-Levinson).
+/// Gaussian noise e_t = a_1 e_{t-1} + ... + a_p e_{t-p} + u_t, stationary, u white with variance s^2,
+/// independent between segments; held as its partial autocorrelations r_1..r_p, each inside (-1, 1), which
+/// map one to one onto the stationary a (Durbin-Levinson).
 struct AutoregressiveNoise {
   Eigen::VectorXd partial;            ///< r_1..r_p; empty = white
   double innovation_variance = 0.0;   ///< s^2, squared unit of the data
@@ -27,14 +27,14 @@ struct AutoregressiveNoise {
   double effective_samples(Eigen::Index rows) const;
 };
 
-/// Multiplies each segment by the inverse Cholesky factor of its noise covariance / s^2: what comes out has white
-/// noise of variance s^2. The first p rows of a segment are whitened by the shorter predictors, so none is lost.
-/// Rows outside the segments are left out; rows come out in the segments' order.
+/// Multiplies each segment by the inverse Cholesky factor of its noise covariance / s^2: what comes out has
+/// white noise of variance s^2. The first p rows of a segment are whitened by the shorter predictors, so none
+/// is lost. Rows outside the segments are left out; rows come out in the segments' order.
 Eigen::MatrixXd whiten(const Eigen::MatrixXd& rows, const std::vector<RowRange>& segments,
                        const Eigen::VectorXd& partial);
 
-/// z^T R^-1 z as a function of the noise, in a time that does not depend on the number of rows: the products of
-/// lagged rows are formed once. z: rows x columns; R: noise correlation in units of s^2.
+/// z^T R^-1 z as a function of the noise, in a time that does not depend on the number of rows: the products
+/// of lagged rows are formed once. z: rows x columns; R: noise correlation in units of s^2.
 class LaggedProducts {
  public:
   LaggedProducts(const Eigen::MatrixXd& z, std::vector<RowRange> segments, Eigen::Index max_order);
@@ -54,7 +54,8 @@ class LaggedProducts {
   std::vector<RowRange> head_segments_;
 };
 
-/// Fits the noise of y = X b + e by restricted maximum likelihood (exact, order chosen by Akaike's criterion).
+/// Fits the noise of y = X b + e by restricted maximum likelihood (exact, order chosen by Akaike's
+/// criterion).
 ///
 /// Maximum likelihood, or an autoregression fitted to the residuals, takes the columns of X for noise that is
 /// missing and finds correlation too small; the restricted likelihood is free of that to first order.

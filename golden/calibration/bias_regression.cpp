@@ -65,8 +65,7 @@ Problem averaged_problem(const DriftSamples& samples, double reference_hz) {
   for (const RowRange& range : samples.segments) {
     for (Eigen::Index block = 0; block < range.count / problem.averaged; ++block, ++next) {
       const Eigen::Index first = range.begin + block * problem.averaged;
-      const Eigen::VectorXd f =
-          samples.frequency_hz.segment(first, problem.averaged).array() - reference_hz;
+      const Eigen::VectorXd f = samples.frequency_hz.segment(first, problem.averaged).array() - reference_hz;
       problem.x.row(next) =
           drift_design(f, samples.slope_hz_per_s.segment(first, problem.averaged)).colwise().mean();
       problem.y(next) = samples.rate_dph.segment(first, problem.averaged).mean();
@@ -87,6 +86,7 @@ class Stepwise {
   struct Decision {
     StepwiseAction::Kind kind;
     Eigen::Index column;
+    Eigen::Index replaced;
     PartialTest test;
   };
 
@@ -110,13 +110,12 @@ class Stepwise {
 
  private:
   bool enter() {
-    Decision best{StepwiseAction::Kind::kEntered, -1, {}};
+    Decision best{StepwiseAction::Kind::kEntered, -1, -1, {}};
     for (Eigen::Index column = 0; column < columns_; ++column) {
       if (std::find(model_.begin(), model_.end(), column) != model_.end()) continue;
       std::vector<Eigen::Index> candidate = model_;
       candidate.push_back(column);
       const PartialTest test = regression_.test(candidate, candidate.size() - 1);
-      if(getenv("GATE")) { std::vector<Eigen::Index> all; for(Eigen::Index q=0;q<columns_;++q) all.push_back(q); if(regression_.test(all, static_cast<std::size_t>(column)).p_value>=level_) continue; }
       if (best.column < 0 || test.p_value < best.test.p_value ||
           (test.p_value == best.test.p_value && test.f_statistic > best.test.f_statistic)) {
         best.column = column;
@@ -130,7 +129,7 @@ class Stepwise {
   }
 
   bool remove() {
-    Decision worst{StepwiseAction::Kind::kRemoved, -1, {}};
+    Decision worst{StepwiseAction::Kind::kRemoved, -1, -1, {}};
     std::size_t position = 0;
     for (std::size_t i = 1; i < model_.size(); ++i) {
       const PartialTest test = regression_.test(model_, i);
@@ -146,24 +145,31 @@ class Stepwise {
     return true;
   }
 
-  // Takes the one exchange of a term inside for a term outside that lowers the sum of squares most.
-  bool exchange() { if(getenv("GATE")) return false;
-    double best = regression_.sum_of_squares(model_) * (1.0 - 1e-9);
+  // Takes the one exchange of a term inside for a term outside that lowers the sum of squares most. Without
+  // it a stand-in that entered while a true term was still missing can keep that term out for good.
+  bool exchange() {
+    double least = regression_.sum_of_squares(model_) * (1.0 - 1e-9);
     std::vector<Eigen::Index> best_model;
+    Decision best{StepwiseAction::Kind::kExchanged, -1, -1, {}};
+    std::size_t position = 0;
     for (std::size_t i = 1; i < model_.size(); ++i) {
       for (Eigen::Index column = 0; column < columns_; ++column) {
         if (std::find(model_.begin(), model_.end(), column) != model_.end()) continue;
         std::vector<Eigen::Index> candidate = model_;
         candidate[i] = column;
-        const double s = regression_.sum_of_squares(candidate);
-        if (s < best) {
-          best = s;
-          best_model = candidate;
-        }
+        const double sum = regression_.sum_of_squares(candidate);
+        if (sum >= least) continue;
+        least = sum;
+        best.column = column;
+        best.replaced = model_[i];
+        position = i;
+        best_model = std::move(candidate);
       }
     }
     if (best_model.empty()) return false;
-    model_ = best_model;
+    model_ = std::move(best_model);
+    best.test = regression_.test(model_, position);
+    decisions_.push_back(best);
     return true;
   }
 
@@ -213,17 +219,18 @@ BiasRegression fit(const DriftSamples& samples, double reference_hz, const Stepw
     return static_cast<std::size_t>(columns[static_cast<std::size_t>(column)]);
   };
   for (const Stepwise::Decision& decision : stepwise.decisions()) {
-    result.log.push_back({decision.kind, term_of(decision.column), decision.test.f_statistic,
-                          decision.test.dof, decision.test.p_value});
+    result.log.push_back({decision.kind, term_of(decision.column),
+                          decision.replaced < 0 ? term_of(decision.column) : term_of(decision.replaced),
+                          decision.test.f_statistic, decision.test.dof, decision.test.p_value});
   }
   for (std::size_t i = 0; i < model.size(); ++i) {
     const PartialTest test = regression.test(model, i);
     const std::size_t term = term_of(model[i]);
     const double scale = problem.scales(static_cast<Eigen::Index>(term));
     result.coefficients[term] = test.coefficient / scale;
+    const double beside_all = regression.test(all, static_cast<std::size_t>(model[i])).p_value;
     result.terms.push_back({term, test.coefficient / scale, test.standard_error / scale, test.f_statistic,
-                            test.dof, test.p_value,
-                            regression.test(all, static_cast<std::size_t>(model[i])).p_value});
+                            test.dof, test.p_value, beside_all, beside_all < result.per_test_level});
   }
   return result;
 }
@@ -244,18 +251,23 @@ bool BiasRegression::selected(std::size_t term) const {
 
 std::string BiasRegression::report() const {
   std::string text = fmt::format(
-      "{} rows of {} sample(s) each, noise: autoregression of order {}, lag-1 correlation {:.3f}, worth {:.1f} "
+      "{} rows of {} sample(s) each, noise: autoregression of order {}, lag-1 correlation {:.3f}, worth "
+      "{:.1f} "
       "independent samples\nlevel of a single test {:.4f}\n",
       rows, averaged, noise.order(), noise.lag1_correlation(), effective_samples, per_test_level);
   for (const StepwiseAction& action : log) {
-    text += fmt::format("{} {:<7} F = {:.3g} on 1 and {:.1f} degrees of freedom, p = {:.2g}\n",
-                        action.kind == StepwiseAction::Kind::kEntered ? "enters" : "leaves",
-                        kDriftTerms[action.term].name, action.f_statistic, action.dof, action.p_value);
+    const std::string_view verb = action.kind == StepwiseAction::Kind::kRemoved ? "leaves" : "enters";
+    const std::string instead = action.kind == StepwiseAction::Kind::kExchanged
+                                    ? fmt::format(" in place of {}", kDriftTerms[action.replaced].name)
+                                    : std::string();
+    text +=
+        fmt::format("{} {}{}: F = {:.3g} on 1 and {:.1f} degrees of freedom, p = {:.2g}\n", verb,
+                    kDriftTerms[action.term].name, instead, action.f_statistic, action.dof, action.p_value);
   }
   for (const SelectedTerm& term : terms) {
-    text += fmt::format("{:<7} {:+.6g} +- {:.2g}  F = {:.3g}  p = {:.2g}  p beside all ten = {:.2g}\n",
-                        kDriftTerms[term.term].name, term.coefficient, term.standard_error, term.f_statistic,
-                        term.p_value, term.p_value_against_all);
+    text += fmt::format("{:<7} {:+.6g} +- {:.2g}  F = {:.3g}  p = {:.2g}{}\n", kDriftTerms[term.term].name,
+                        term.coefficient, term.standard_error, term.f_statistic, term.p_value,
+                        term.term == 0 || term.proven ? "" : "  (another term could stand in its place)");
   }
   for (const std::size_t term : undetermined) {
     text += fmt::format("{:<7} not determined by these data\n", kDriftTerms[term].name);

@@ -37,13 +37,17 @@ struct SelectedTerm {
   double p_value;
   /// The same test in the model of all ten terms: large where another term could stand in for this one.
   double p_value_against_all;
+  /// p_value_against_all is below the level: no combination of the other terms explains the data without this
+  /// one. False of a term that the drift needs, but that another one could replace over this excitation.
+  bool proven;
 };
 
 /// One decision of the procedure, in order.
 struct StepwiseAction {
-  enum class Kind { kEntered, kRemoved };
+  enum class Kind { kEntered, kRemoved, kExchanged };
   Kind kind;
   std::size_t term;
+  std::size_t replaced;  ///< what an exchange took out; `term` itself otherwise
   double f_statistic;
   double dof;
   double p_value;
@@ -72,17 +76,23 @@ struct BiasRegression {
 /// Stepwise linear regression of the rate over the ten terms of the paper's Eq. (21), by partial F-tests.
 ///
 /// A term enters when it has the smallest p-value of all outside the model and that is below the level; after
-/// every entry the term with the largest p-value leaves if that is above the level. The constant always stays.
-/// The level of a single test is Sidak's, 1 - (1 - family_wise_level)^(1/9), for nine candidates.
-/// Coloured noise: an autoregression is fitted by restricted likelihood beside all ten terms, samples and columns
-/// are whitened by it, and the F-tests are those of generalised least squares with the residual variance of the
-/// full model; their denominator degrees of freedom are Satterthwaite's, 2 v^2 / Var(v) for the variance v of the
+/// every entry the term with the largest p-value leaves if that is above the level, and a term inside gives
+/// way to one outside as long as that lowers the sum of squares. The constant always stays. The level of a
+/// single test is Sidak's, 1 - (1 - family_wise_level)^(1/9), for nine candidates. Coloured noise: an
+/// autoregression is fitted by restricted likelihood beside all ten terms, samples and columns are whitened
+/// by it, and the F-tests are those of generalised least squares with the residual variance of the full
+/// model; their denominator degrees of freedom are Satterthwaite's, 2 v^2 / Var(v) for the variance v of the
 /// tested coefficient, so that the uncertainty of the noise model itself is paid for.
-/// Long recordings are averaged to at most 1000 to 2000 rows first: drift is slow, and an autoregression of
-/// low order then describes the noise where the drift is, not where it is not.
-/// Throws std::invalid_argument: sizes that do not fit, values that are not finite, fewer than 40 rows.
-/// Source: the paper's Eq. (19)-(22); Efroymson's stepwise regression; Satterthwaite, Biometrics 2 (1946) 110.
-BiasRegression fit_bias(const DriftSamples& samples, double reference_hz, const StepwiseOptions& options = {});
+/// What the level promises: over recordings, the share in which any term without effect is `proven` is at
+/// most family_wise_level whatever the truth is; the share in which any such term is in the model is at most
+/// that once the data suffice to hold all true ones. Before that, a drift that is certainly there is carried
+/// by the term that fits best, which need not be the true one; it is then not `proven`. Long recordings are
+/// averaged to at most 1000 to 2000 rows first: drift is slow, and an autoregression of low order then
+/// describes the noise where the drift is, not where it is not. Throws std::invalid_argument: sizes that do
+/// not fit, values that are not finite, fewer than 40 rows. Source: the paper's Eq. (19)-(22); Efroymson's
+/// stepwise regression; Satterthwaite, Biometrics 2 (1946) 110.
+BiasRegression fit_bias(const DriftSamples& samples, double reference_hz,
+                        const StepwiseOptions& options = {});
 
 /// All ten terms without selection, by the same generalised least squares; log is empty.
 BiasRegression fit_bias_all_terms(const DriftSamples& samples, double reference_hz);

@@ -10,8 +10,8 @@
 namespace hemi::calibration {
 namespace {
 
-// A unit column's distance from the span of the others is computed to about rows * epsilon; a hundred times that
-// still leaves every column that carries ten digits of its own.
+// A unit column's distance from the span of the others is computed to about rows * epsilon; a hundred times
+// that still leaves every column that carries ten digits of its own.
 double rank_tolerance(Eigen::Index rows) {
   return 100.0 * static_cast<double>(rows) * std::numeric_limits<double>::epsilon();
 }
@@ -29,9 +29,11 @@ void check_sizes(const Eigen::MatrixXd& x, const Eigen::VectorXd& y, const std::
     throw std::invalid_argument(fmt::format("least squares: {} values for {} rows", y.size(), x.rows()));
   }
   if (!names.empty() && static_cast<Eigen::Index>(names.size()) != x.cols()) {
-    throw std::invalid_argument(fmt::format("least squares: {} names for {} columns", names.size(), x.cols()));
+    throw std::invalid_argument(
+        fmt::format("least squares: {} names for {} columns", names.size(), x.cols()));
   }
-  if (!x.allFinite() || !y.allFinite()) throw std::invalid_argument("least squares: values are not all finite");
+  if (!x.allFinite() || !y.allFinite())
+    throw std::invalid_argument("least squares: values are not all finite");
 }
 
 Eigen::VectorXd column_scales(const Eigen::MatrixXd& x) {

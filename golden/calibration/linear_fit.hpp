@@ -32,10 +32,10 @@ struct LinearFit {
 
 /// Ordinary least squares by Householder QR on columns scaled to unit norm.
 ///
-/// x: rows x columns, rows >= columns >= 1; y: rows. `names` (empty, or one a column) serve the error message.
-/// Throws std::invalid_argument on sizes that do not fit or values that are not finite, RankDeficiencyError
-/// where a column lies in the span of those before it to within rounding.
-/// Source: Golub and Van Loan, Matrix Computations, section 5.3.
+/// x: rows x columns, rows >= columns >= 1; y: rows. `names` (empty, or one a column) serve the error
+/// message. Throws std::invalid_argument on sizes that do not fit or values that are not finite,
+/// RankDeficiencyError where a column lies in the span of those before it to within rounding. Source: Golub
+/// and Van Loan, Matrix Computations, section 5.3.
 LinearFit fit_linear(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
                      const std::vector<std::string>& names = {});
 

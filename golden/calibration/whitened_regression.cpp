@@ -13,7 +13,14 @@ namespace hemi::calibration {
 namespace {
 
 // Orders up to eight follow noise with two or three time constants; one parameter for thirty rows at most.
-Eigen::Index largest_order(Eigen::Index rows) { return std::clamp<Eigen::Index>(rows / 30, 1, 8); }
+Eigen::Index largest_order(Eigen::Index rows) {
+  return std::clamp<Eigen::Index>(rows / 30, 1, 8);
+}
+
+// The linearised variance of a variance has no bound where the noise's correlation time is hardly known, yet
+// the variance itself has one: generalised least squares turns into differences as the correlation goes to
+// one.
+constexpr double kLeastDof = 2.0;
 
 Eigen::MatrixXd upper_triangle(const Eigen::HouseholderQR<Eigen::MatrixXd>& qr, Eigen::Index size) {
   return qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
@@ -91,17 +98,17 @@ PartialTest WhitenedRegression::test(const std::vector<Eigen::Index>& subset, st
   Eigen::VectorXd gradient(noise_.covariance.rows());
   gradient(gradient.size() - 1) = 1.0;
   for (std::size_t i = 0; i < moved_by_.size(); ++i) {
-    gradient(static_cast<Eigen::Index>(i)) = (std::log(variance_factor(information_plus_[i], subset, which)) -
-                                              std::log(variance_factor(information_minus_[i], subset, which))) /
-                                             (2.0 * moved_by_[i]);
+    gradient(static_cast<Eigen::Index>(i)) =
+        (std::log(variance_factor(information_plus_[i], subset, which)) -
+         std::log(variance_factor(information_minus_[i], subset, which))) /
+        (2.0 * moved_by_[i]);
   }
   PartialTest result{};
   result.coefficient = coefficients(target);
   result.standard_error = std::sqrt(variance);
   result.f_statistic = coefficients(target) * coefficients(target) / variance;
-  result.dof = std::min(2.0 / gradient.dot(noise_.covariance * gradient),
-                        static_cast<double>(rows_ - triangle_.cols()));
-  if(getenv("DFMIN")) result.dof=std::max(result.dof, atof(getenv("DFMIN")));
+  result.dof = std::clamp(2.0 / gradient.dot(noise_.covariance * gradient), kLeastDof,
+                          static_cast<double>(rows_ - triangle_.cols()));
   const boost::math::fisher_f_distribution<double> distribution(1.0, result.dof);
   result.p_value = boost::math::cdf(boost::math::complement(distribution, result.f_statistic));
   return result;

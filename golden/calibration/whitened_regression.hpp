@@ -18,13 +18,14 @@ struct PartialTest {
   double p_value;
 };
 
-/// Generalised least squares of y on any subset of the columns of x under one noise model, estimated once beside
-/// all columns. Everything about a subset comes from a triangle of columns x columns, whatever the number of rows.
+/// Generalised least squares of y on any subset of the columns of x under one noise model, estimated once
+/// beside all columns. Everything about a subset comes from a triangle of columns x columns, whatever the
+/// number of rows.
 class WhitenedRegression {
  public:
   /// x: rows x columns, of full rank, columns of similar size; y: rows. Throws RankDeficiencyError.
-  WhitenedRegression(const Eigen::MatrixXd& x, const Eigen::VectorXd& y, const std::vector<RowRange>& segments,
-                     bool assume_white_noise);
+  WhitenedRegression(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
+                     const std::vector<RowRange>& segments, bool assume_white_noise);
 
   /// Test of column `subset[which]` in the model of the columns `subset`.
   PartialTest test(const std::vector<Eigen::Index>& subset, std::size_t which) const;
@@ -40,9 +41,9 @@ class WhitenedRegression {
 
   Eigen::Index rows_;
   AutoregressiveNoise noise_;
-  Eigen::MatrixXd basis_change_;  // x = orthonormal columns * basis_change_
-  Eigen::MatrixXd triangle_;      // whitened x = orthonormal columns * triangle_
-  Eigen::VectorXd projection_;    // whitened y in those columns
+  Eigen::MatrixXd basis_change_;                    // x = orthonormal columns * basis_change_
+  Eigen::MatrixXd triangle_;                        // whitened x = orthonormal columns * triangle_
+  Eigen::VectorXd projection_;                      // whitened y in those columns
   std::vector<Eigen::MatrixXd> information_plus_;   // x^T R^-1 x with one noise parameter moved up
   std::vector<Eigen::MatrixXd> information_minus_;  // and down
   std::vector<double> moved_by_;

@@ -213,7 +213,7 @@ template <std::size_t Index>
 struct Shape {
   static constexpr std::uint64_t state = (Index + 1) * 48271 * 48271 % 2147483647 * 48271 % 2147483647;
   static constexpr int width = static_cast<int>(state % 63) + 1;
-  static constexpr int integer = static_cast<int>(state / 63 % 76) - 6;
+  static constexpr int integer = static_cast<int>(state / 63 % 48) - 6;
 };
 
 template <std::size_t Index>
@@ -222,42 +222,42 @@ using ShapeType = Fixed<Shape<Index>::width, Shape<Index>::integer>;
 template <std::size_t... Index>
 void compare_shapes_quantised(Comparison& comparison, std::index_sequence<Index...>) {
   (compare_modes<Shape<2 * Index>::width, Shape<2 * Index>::integer, ShapeType<2 * Index + 1>>(comparison,
-                                                                                               Index, 100),
+                                                                                               Index, 1000),
    ...);
 }
 
 template <std::size_t... Index>
 void compare_shape_pairs(Comparison& comparison, std::index_sequence<Index...>) {
-  (compare_pair<ShapeType<2 * Index>, ShapeType<2 * Index + 1>>(comparison, Index, 2), ...);
+  (compare_pair<ShapeType<2 * Index>, ShapeType<2 * Index + 1>>(comparison, Index, 5), ...);
 }
 
 TEST(FixedAgainstSystemC, QuantiseNarrowsAndWidens) {
   Comparison comparison;
-  compare_modes<16, 1, Fixed<24, 1>>(comparison, 1, 2000);
-  compare_modes<16, 1, Fixed<46, 20>>(comparison, 2, 2000);
-  compare_modes<24, 1, Fixed<16, 1>>(comparison, 3, 2000);
-  compare_modes<24, 2, Fixed<40, 2>>(comparison, 4, 2000);
-  compare_modes<32, 16, Fixed<33, 16>>(comparison, 5, 2000);
-  compare_modes<33, 16, Fixed<32, 15>>(comparison, 6, 2000);
-  compare_modes<18, -4, Fixed<30, -2>>(comparison, 7, 2000);
-  compare_modes<12, 20, Fixed<40, 22>>(comparison, 8, 2000);
-  compare_modes<63, 20, Fixed<63, 21>>(comparison, 9, 2000);
-  compare_modes<63, 21, Fixed<63, 20>>(comparison, 10, 2000);
-  compare_modes<63, 0, Fixed<63, 62>>(comparison, 11, 2000);
-  compare_modes<63, 63, Fixed<63, 0>>(comparison, 12, 2000);
-  compare_modes<63, 64, Fixed<63, 0>>(comparison, 13, 2000);
-  compare_modes<1, 1, Fixed<63, 2>>(comparison, 14, 2000);
+  compare_modes<16, 1, Fixed<24, 1>>(comparison, 1, 3000);
+  compare_modes<16, 1, Fixed<46, 20>>(comparison, 2, 3000);
+  compare_modes<24, 1, Fixed<16, 1>>(comparison, 3, 3000);
+  compare_modes<24, 2, Fixed<40, 2>>(comparison, 4, 3000);
+  compare_modes<32, 16, Fixed<33, 16>>(comparison, 5, 3000);
+  compare_modes<33, 16, Fixed<32, 15>>(comparison, 6, 3000);
+  compare_modes<18, -4, Fixed<30, -2>>(comparison, 7, 3000);
+  compare_modes<12, 20, Fixed<40, 22>>(comparison, 8, 3000);
+  compare_modes<63, 20, Fixed<63, 21>>(comparison, 9, 3000);
+  compare_modes<63, 21, Fixed<63, 20>>(comparison, 10, 3000);
+  compare_modes<63, 0, Fixed<63, 62>>(comparison, 11, 3000);
+  compare_modes<63, 63, Fixed<63, 0>>(comparison, 12, 3000);
+  compare_modes<63, 64, Fixed<63, 0>>(comparison, 13, 3000);
+  compare_modes<1, 1, Fixed<63, 2>>(comparison, 14, 3000);
   compare_modes<63, 2, Fixed<1, 1>>(comparison, 15, 0);
-  compare_modes<62, 8, Fixed<62, 8, Round::half_up, Overflow::saturate_symmetric>>(comparison, 16, 2000);
-  compare_modes<8, -70, Fixed<20, 3>>(comparison, 17, 2000);
-  compare_modes<8, 90, Fixed<20, 3>>(comparison, 18, 2000);
-  comparison.finish(500'000);
+  compare_modes<62, 8, Fixed<62, 8, Round::half_up, Overflow::saturate_symmetric>>(comparison, 16, 3000);
+  compare_modes<8, -70, Fixed<20, 3>>(comparison, 17, 3000);
+  compare_modes<8, 90, Fixed<20, 3>>(comparison, 18, 3000);
+  comparison.finish(1'000'000);
 }
 
 TEST(FixedAgainstSystemC, QuantiseInSpreadShapes) {
   Comparison comparison;
-  compare_shapes_quantised(comparison, std::make_index_sequence<40>());
-  comparison.finish(500'000);
+  compare_shapes_quantised(comparison, std::make_index_sequence<16>());
+  comparison.finish(300'000);
 }
 
 TEST(FixedAgainstSystemC, ArithmeticAndOrder) {
@@ -273,14 +273,13 @@ TEST(FixedAgainstSystemC, ArithmeticAndOrder) {
   compare_pair<Fixed<63, 63>, Fixed<63, 0>>(comparison, 9, 10);
   compare_pair<Fixed<48, 0>, Fixed<40, 2>>(comparison, 10, 10);
   compare_pair<Fixed<12, -60>, Fixed<5, 70>>(comparison, 11, 10);
-  compare_pair<Fixed<5, 70>, Fixed<12, -60>>(comparison, 12, 10);
   compare_pair<Fixed<1, 1>, Fixed<1, 1>>(comparison, 13, 10);
   comparison.finish(200'000);
 }
 
 TEST(FixedAgainstSystemC, ArithmeticAndOrderInSpreadShapes) {
   Comparison comparison;
-  compare_shape_pairs(comparison, std::make_index_sequence<50>());
+  compare_shape_pairs(comparison, std::make_index_sequence<24>());
   comparison.finish(300'000);
 }
 

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tb/hls_engine.hpp"
+#include "tests/tb/mutant_engine.hpp"
+
+namespace hemi::tests {
+std::unique_ptr<tb::Engine> make_mutant_engine() {
+  return tb::make_hls_engine(false);
+}
+}  // namespace hemi::tests
