@@ -46,12 +46,14 @@ std::string by_traces(const Trace& a, const Trace& b, std::uint64_t samples) {
 }  // namespace
 
 int main() {
-  // Short enough for a slow engine, long enough for lock, hold-over, two windows of df/dt and a gap.
+  // Short enough for a slow engine, long enough for lock, hold-over, loss of lock by a jump of frequency, two
+  // windows of df/dt and a gap.
   std::mt19937_64 generator(31);
   std::vector<tb::SamplePair> pairs;
   tests::append(pairs, tests::Stretch::tone, 24000, false, 4425.0, 3.0, generator);
   tests::append(pairs, tests::Stretch::silence, 1000, false, 4425.0, 0.5, generator);
   tests::append(pairs, tests::Stretch::overdriven, 3000, false, 4425.0, 0.5, generator);
+  tests::append(pairs, tests::Stretch::tone, 4000, false, 4475.0, 3.0, generator);
   pairs[9000].gap = true;
   auto values = tests::busy_registers(false, 4420.0);
   values[config::reg_log2_block] = 0;

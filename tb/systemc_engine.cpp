@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tb/systemc_engine.hpp"
+
+#include <stdexcept>
+
+#include "VHemiScReference.h"
+#include "VHemiScWide.h"
+#include "tb/systemc_bench.hpp"
+
+namespace hemi::tb {
+namespace {
+
+/// SystemC elaborates once: both benches are made before the first clock runs.
+struct Simulation {
+  Bench<VHemiScReference, config::Reference> reference{"reference"};
+  Bench<VHemiScWide, config::Wide> wide{"wide"};
+};
+
+Simulation& simulation() {
+  // Never destroyed: SystemC's own context goes at exit, before or after ours would.
+  static Simulation& the_one = *new Simulation;
+  return the_one;
+}
+
+template <class BenchType>
+class SystemcEngine : public Engine {
+ public:
+  SystemcEngine(BenchType& bench, const RtlOptions& options) : bench_(bench), options_(options) {}
+  std::string name() const override { return "systemc"; }
+
+  void reset(const RegisterValues& values) override { bench_.reset(to_image(values), options_); }
+
+  void samples(std::span<const SamplePair> input, std::vector<Record>& output) override {
+    std::vector<StreamItem> items(input.size());
+    for (std::size_t i = 0; i < input.size(); ++i) items[i].pair = input[i];
+    bench_.feed(items, output);
+  }
+
+  void telemetry(double frequency_hz, double rate_dph, bool valid, std::vector<Record>& output) override {
+    StreamItem item;
+    item.pair.gap = !valid;
+    item.telemetry = true;
+    item.frequency = to_raw(frequency_hz, config::frequency, "frequency_hz");
+    item.rate = to_raw(rate_dph, config::rate, "rate_dph");
+    bench_.feed({item}, output);
+  }
+
+  void set_taps(TapSink* sink) override { bench_.set_taps(sink); }
+
+ private:
+  BenchType& bench_;
+  RtlOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_systemc_engine(bool wide, const RtlOptions& options) {
+  if (!options.waves.empty())
+    throw std::invalid_argument("the SystemC bench leaves no waves; the rtl engine does");
+  if (wide) return std::make_unique<SystemcEngine<decltype(Simulation::wide)>>(simulation().wide, options);
+  return std::make_unique<SystemcEngine<decltype(Simulation::reference)>>(simulation().reference, options);
+}
+
+}  // namespace hemi::tb
