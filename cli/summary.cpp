@@ -53,6 +53,18 @@ double mean(const std::vector<double>& v, std::size_t begin, std::size_t end) {
   return sum / static_cast<double>(end - begin);
 }
 
+/// Least squares on the phase that the outputs sum to: parabolic weights 6 k (n + 1 - k) / (n (n + 1) (n +
+/// 2)).
+double phase_slope(const std::vector<double>& f, std::size_t begin, std::size_t end) {
+  const auto n = static_cast<double>(end - begin);
+  double sum = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto k = static_cast<double>(i - begin + 1);
+    sum += k * (n + 1 - k) * f[i];
+  }
+  return 6 * sum / (n * (n + 1) * (n + 2));
+}
+
 }  // namespace
 
 RunSummary summarise_capture(const recording::Recording& output, double from_s, double to_s) {
@@ -74,20 +86,15 @@ RunSummary summarise_capture(const recording::Recording& output, double from_s, 
   s.outputs = t.size();
   s.locked_share = window > 0 ? static_cast<double>(t.size()) / static_cast<double>(window) : 0.0;
   if (t.size() < 20) return s;
-  const std::size_t tenth = t.size() / 10;
+  const std::size_t quarter = t.size() / 4;
   s.first_s = t.front();
   s.last_s = t.back();
-  double weight = 0;
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    s.frequency_hz += a[i] * a[i] * f[i];
-    weight += a[i] * a[i];
-  }
-  s.frequency_hz /= weight;
-  s.start_hz = mean(f, 0, tenth);
-  s.end_hz = mean(f, t.size() - tenth, t.size());
+  s.frequency_hz = phase_slope(f, 0, f.size());
+  s.start_hz = phase_slope(f, 0, quarter);
+  s.end_hz = phase_slope(f, f.size() - quarter, f.size());
   s.drift_ppm = (s.end_hz / s.start_hz - 1.0) * 1e6;
-  s.start_amplitude = mean(a, 0, tenth);
-  s.end_amplitude = mean(a, t.size() - tenth, t.size());
+  s.start_amplitude = mean(a, 0, quarter);
+  s.end_amplitude = mean(a, a.size() - quarter, a.size());
   fit_decay(t, a, s);
   return s;
 }

@@ -15,11 +15,11 @@ namespace hemi::cli {
 struct RunSummary {
   std::size_t outputs = 0;  ///< used
   double first_s = 0.0, last_s = 0.0;
-  double locked_share = 0.0;            ///< of the outputs in the window
-  double frequency_hz = 0.0;            ///< mean, weighted with the squared amplitude
-  double start_hz = 0.0, end_hz = 0.0;  ///< means over the first and last tenth
-  double drift_ppm = 0.0;               ///< end over start
-  double start_amplitude = 0.0, end_amplitude = 0.0;
+  double locked_share = 0.0;                          ///< of the outputs in the window
+  double frequency_hz = 0.0;                          ///< least squares on the phase over the window
+  double start_hz = 0.0, end_hz = 0.0;                ///< the same over its first and last quarter
+  double drift_ppm = 0.0;                             ///< end over start
+  double start_amplitude = 0.0, end_amplitude = 0.0;  ///< means over the same quarters
   std::optional<double> damping_time_s;        ///< -1 / slope of log amplitude, where the amplitude decays
   std::optional<double> quality_factor;        ///< pi f damping_time
   std::optional<double> quality_factor_error;  ///< one sigma, from the scatter about the line

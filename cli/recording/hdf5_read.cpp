@@ -89,7 +89,8 @@ std::vector<double> read_values(hid_t dataset, const Place& place) {
   }
   check_interrupt();
   if (!is_backed(dataset)) {
-    throw InputError(place, fmt::format("claims {} values and stores none", *length),
+    throw InputError(place,
+                     fmt::format("claims {} values, more than its bytes in the file can hold", *length),
                      "the file is damaged, or was never completed: record it again");
   }
   std::vector<double> values(*length);
