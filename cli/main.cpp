@@ -10,6 +10,11 @@
 #include "cli/recording/interrupt.hpp"
 #include "tb/registers.hpp"
 
+// SystemC's library has a main of its own, which would call this; ours goes before it.
+extern "C" int sc_main(int, char**) {
+  return 0;
+}
+
 int main(int argc, char** argv) {
   using namespace hemi;
   CLI::App app{"hemi: signal core, simulation and calibration of hemispherical resonator gyros"};

@@ -17,8 +17,12 @@ struct Simulation {
 };
 
 Simulation& simulation() {
-  // Never destroyed: SystemC's own context goes at exit, before or after ours would.
-  static Simulation& the_one = *new Simulation;
+  // Never destroyed: SystemC's own context goes at exit, before or after ours would. The models take
+  // Verilator's context of the moment, which must outlive them and is not that of an rtl engine.
+  static Simulation& the_one = [&]() -> Simulation& {
+    Verilated::threadContextp(new VerilatedContext);
+    return *new Simulation;
+  }();
   return the_one;
 }
 

@@ -60,9 +60,10 @@ class RtlEngine : public Engine {
     model_.sample_valid_i = 0;
     model_.register_valid_i = 0;
     model_.rst_ni = 0;
-    for (int i = 0; i < reset_clocks; ++i) clock(nullptr);
+    for (int i = 0; i < reset_clocks; ++i) clock();
     model_.rst_ni = 1;
     next_offer_ = 0;
+    records_.clear();
     for (int i = 0; i < config::register_count; ++i) write_register(i, image[i]);
   }
 
@@ -72,7 +73,7 @@ class RtlEngine : public Engine {
       model_.sample_x_i = static_cast<std::uint32_t>(pair.x) & adc_mask();
       model_.sample_y_i = static_cast<std::uint32_t>(pair.y) & adc_mask();
       model_.sample_gap_i = pair.gap;
-      offer(output);
+      offer();
     }
     drain(output);
   }
@@ -82,7 +83,7 @@ class RtlEngine : public Engine {
     write_register(telemetry_rate_address, to_raw(rate_dph, config::rate, "rate_dph"));
     model_.sample_telemetry_i = 1;
     model_.sample_gap_i = !valid;
-    offer(output);
+    offer();
     drain(output);
   }
 
@@ -110,50 +111,52 @@ class RtlEngine : public Engine {
   }
 
   /// One clock; what the core offers before its edge is taken at the edge.
-  void clock(std::vector<Record>* output) {
-    model_.record_ready_i = output != nullptr && !happens(options_.back_pressure_probability);
+  void clock() {
+    model_.record_ready_i = !happens(options_.back_pressure_probability);
     if (sink_ != nullptr && model_.tap_valid_o) {
       sink_->tap(static_cast<config::TapIndex>(model_.tap_o), extend(model_.tap_value_o));
     }
-    if (model_.record_ready_i && model_.record_valid_o) take_word(*output);
+    if (model_.record_ready_i && model_.record_valid_o) take_word();
     edge(true);
     edge(false);
     ++clocks_;
   }
 
-  void take_word(std::vector<Record>& output) {
+  void take_word() {
     const int index = model_.record_index_o;
     record_.words[index] = to_value(extend(model_.record_word_o), record_formats[index]);
-    if (model_.record_last_o) output.push_back(record_);
+    if (model_.record_last_o) records_.push_back(record_);
   }
 
-  void offer(std::vector<Record>& output) {
-    while (clocks_ < next_offer_ || happens(options_.input_gap_probability)) clock(&output);
+  void offer() {
+    while (clocks_ < next_offer_ || happens(options_.input_gap_probability)) clock();
     model_.sample_valid_i = 1;
-    wait_for([this] { return model_.sample_ready_o != 0; }, &output);
+    wait_for([this] { return model_.sample_ready_o != 0; });
     next_offer_ = clocks_ + options_.clocks_per_sample;
-    clock(&output);
+    clock();
     model_.sample_valid_i = 0;
   }
 
   void drain(std::vector<Record>& output) {
-    wait_for([this] { return model_.busy_o == 0; }, &output);
+    wait_for([this] { return model_.busy_o == 0; });
+    output.insert(output.end(), records_.begin(), records_.end());
+    records_.clear();
   }
 
   void write_register(int address, std::int64_t word) {
     model_.register_address_i = static_cast<std::uint8_t>(address);
     model_.register_data_i = static_cast<std::uint64_t>(word) & word_mask;
     model_.register_valid_i = 1;
-    wait_for([this] { return model_.register_ready_o != 0; }, nullptr);
-    clock(nullptr);
+    wait_for([this] { return model_.register_ready_o != 0; });
+    clock();
     model_.register_valid_i = 0;
   }
 
   template <class Condition>
-  void wait_for(Condition condition, std::vector<Record>* output) {
+  void wait_for(Condition condition) {
     for (int i = 0; !condition(); ++i) {
       if (i == patience) throw std::runtime_error("rtl: the core stands still");
-      clock(output);
+      clock();
     }
   }
 
@@ -163,7 +166,8 @@ class RtlEngine : public Engine {
   Model model_{&context_};
   VerilatedFstC trace_;
   TapSink* sink_ = nullptr;
-  Record record_;
+  Record record_;  ///< the one that is coming out
+  std::vector<Record> records_;
   std::uint64_t clocks_ = 0;
   std::uint64_t next_offer_ = 0;
 };

@@ -17,7 +17,7 @@ struct RtlOptions {
   double back_pressure_probability = 0;    ///< that a record word is not taken at a clock
   int clocks_per_sample = 0;               ///< least clocks from one sample to the next
   bool checks = false;                     ///< stop at a read of a word that is not there yet; slower
-  std::filesystem::path waves;             ///< FST file of all signals (implies checks); empty for none
+  std::filesystem::path waves{};           ///< FST file of all signals (implies checks); empty for none
 };
 
 /// The SystemVerilog core of rtl/ under Verilator: config::Wide when `wide`, else config::Reference. Throws

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "rtl/address_map.hpp"
+
 namespace hemi::microcode {
 namespace {
 
@@ -36,7 +38,7 @@ std::vector<Mode> all_modes(int cic_bits) {
 Assembler::Assembler(Instrument instrument)
     : instrument_(std::move(instrument)),
       modes_(all_modes(instrument_.cic_bits)),
-      next_word_(config::register_count),
+      next_word_(symbolic_base),
       next_constant_(port_base - 1) {
   static_assert(config::offset.width == config::derivative.width && config::bias.width == config::temperature.width &&
                     config::bias.width == config::slope_word.width && config::total_phase.width == config::frequency.width,
@@ -46,13 +48,13 @@ Assembler::Assembler(Instrument instrument)
 
 Word Assembler::word(const std::string& name) {
   const auto [place, created] = words_.try_emplace(name, Word{next_word_});
-  if (created && next_word_++ >= next_constant_) throw std::logic_error("state memory is full");
+  if (created) ++next_word_;
   return place->second;
 }
 
 Word Assembler::constant(std::int64_t value) {
   const auto [place, created] = constants_.try_emplace(value, Word{next_constant_});
-  if (created && next_constant_-- <= next_word_) throw std::logic_error("state memory is full");
+  if (created) --next_constant_;
   return place->second;
 }
 
@@ -85,12 +87,14 @@ std::string Assembler::name_of(Word word) const {
       {product_port.address, "product"},   {lookup_port.address, "looked_up"}, {sample_x_port.address, "sample_x"},
       {sample_y_port.address, "sample_y"}, {gap_port.address, "gap"},          {live_port.address, "live"}};
   if (word.address < config::register_count) return config::registers[word.address].name;
+  if (word.address == telemetry_frequency_address) return "telemetry_frequency";
+  if (word.address == telemetry_rate_address) return "telemetry_rate";
   if (const auto port = ports.find(word.address); port != ports.end()) return port->second;
   for (const auto& [name, place] : words_) {
     if (place == word) return name;
   }
   for (const auto& [value, place] : constants_) {
-    if (place == word) return "#" + std::to_string(value);
+    if (place == word) return std::string("#").append(std::to_string(value));
   }
   throw std::logic_error("no word at address " + std::to_string(word.address));
 }

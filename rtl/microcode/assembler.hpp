@@ -38,12 +38,15 @@ constexpr int word_bits = 54;
 constexpr int state_words = 256;
 constexpr int address_bits = 8;
 
-/// An address of the state memory or, from port_base on, a port of the datapath (operand b alone).
+/// An address of the state memory or, from port_base on, a port of the datapath (operand b alone); from
+/// symbolic_base on a name that gets its address when the program is scheduled (allocate.hpp).
 struct Word {
   int address = 0;
   bool operator==(const Word&) const = default;
 };
 constexpr int port_base = 248;
+constexpr int symbolic_base = 1000;
+constexpr bool is_port(Word word) { return word.address >= port_base && word.address < state_words; }
 constexpr Word product_port{port_base};       ///< multiplier, 56 bits
 constexpr Word lookup_port{port_base + 1};    ///< magnitude of the sine or cosine that was looked up
 constexpr Word sample_x_port{port_base + 2};  ///< the sample being worked on
@@ -129,11 +132,12 @@ struct Instruction {
 struct Region {
   std::string label;
   std::deque<Instruction> lines;
-  std::string jump_target;  ///< taken at the end when `negative` is set; empty for none
-  Control last = Control::next;
-  bool in_order = false;    ///< one line a place, as written
-  bool follows_sample = false;  ///< entered straight behind a sample's last instructions
-  bool may_yield = false;
+  std::string jump_target;  ///< at the end; empty for none
+  Condition jump_condition = Condition::always;
+  Control last = Control::next;  ///< of the last place
+  bool in_order = false;         ///< one line a place, as written
+  bool follows_sample = false;   ///< entered straight behind a sample's last instructions
+  bool background = true;        ///< a waiting sample may interrupt it
 };
 
 /// Collects words, constants and instructions of one instrument's program.
@@ -143,7 +147,7 @@ class Assembler {
 
   const Instrument& instrument() const { return instrument_; }
 
-  /// The word of that name; allocated at its first use, zero after reset.
+  /// The word of that name, zero after reset.
   Word word(const std::string& name);
   Word word(const std::string& name, int index) { return word(name + "_" + std::to_string(index)); }
   /// A word that always holds `value`.
