@@ -41,7 +41,7 @@ void set_loop(Setup& setup) {
   // A 32nd of the frequency error a tick: slow against the six ticks of delay, fast against the loop.
   setup.values[config::reg_loop_frequency] = 1.0 / (32.0 * s.decimation);
   setup.values[config::reg_amplitude_threshold] = 1e-3;
-  setup.values[config::reg_lock_count] = 1000.0;
+  setup.values[config::reg_lock_count] = 125.0;
   setup.values[config::reg_demodulation_cos] = 1.0;
   const double dph_per_ratio = 1.0 / (nominal_kappa * nominal_tau_s) * 180.0 / std::numbers::pi * 3600.0;
   const double gain = 0.5 * std::pow(s.decimation, config::cic_order) /

@@ -18,29 +18,24 @@ constexpr std::uint64_t bit(config::StatusBit b) {
 constexpr std::uint64_t unusable =
     bit(config::status_unlocked) | bit(config::status_holdover) | bit(config::status_frequency_invalid);
 
-/// Line through log amplitude, weighted with the squared amplitude (additive noise); outputs overlap by half,
-/// so a scatter of n outputs counts as n / 2.
+/// Straight line through log amplitude, all outputs alike: what scatters a ring-down is mostly neighbouring
+/// lines, which shrink with it. Outputs overlap by half, so n of them count as n / 2.
 void fit_decay(const std::vector<double>& t, const std::vector<double>& a, RunSummary& s) {
-  double w0 = 0, wt = 0, wy = 0;
+  const auto n = static_cast<double>(t.size());
+  double t_mean = 0, y_mean = 0;
   for (std::size_t i = 0; i < t.size(); ++i) {
-    const double w = a[i] * a[i];
-    w0 += w;
-    wt += w * t[i];
-    wy += w * std::log(a[i]);
+    t_mean += t[i] / n;
+    y_mean += std::log(a[i]) / n;
   }
-  double tt = 0, ty = 0;
+  double tt = 0, ty = 0, yy = 0;
   for (std::size_t i = 0; i < t.size(); ++i) {
-    const double w = a[i] * a[i];
-    tt += w * (t[i] - wt / w0) * (t[i] - wt / w0);
-    ty += w * (t[i] - wt / w0) * (std::log(a[i]) - wy / w0);
+    const double y = std::log(a[i]) - y_mean;
+    tt += (t[i] - t_mean) * (t[i] - t_mean);
+    ty += (t[i] - t_mean) * y;
+    yy += y * y;
   }
   const double slope = ty / tt;
-  double scatter = 0;
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    const double residual = std::log(a[i]) - wy / w0 - slope * (t[i] - wt / w0);
-    scatter += a[i] * a[i] * residual * residual;
-  }
-  const double error = std::sqrt(scatter / tt / (0.5 * static_cast<double>(t.size())));
+  const double error = std::sqrt((yy - slope * ty) / tt / (0.5 * n));
   if (!(slope < -3.0 * error)) return;
   s.damping_time_s = -1.0 / slope;
   s.quality_factor = std::numbers::pi * s.frequency_hz * *s.damping_time_s;

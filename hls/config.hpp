@@ -90,7 +90,9 @@ constexpr int image_shift = 6;
 
 // reference_phase_loop
 constexpr int lock_window_log2 = 28;  ///< |phase error| < 2^28 / 2^32 = 1/16 turn counts towards lock
-constexpr int lock_penalty = 4;       ///< steps back for a tick outside the window
+constexpr int steering_window_log2 =
+    24;  ///< a change of the error of 2^24 / 2^32 turn a tick (20 Hz) and more steers the frequency
+constexpr int lock_penalty = 4;  ///< steps back for a tick outside the window
 
 // ---- Registers
 // ---------------------------------------------------------------------------------------------------

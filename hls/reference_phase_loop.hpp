@@ -2,8 +2,8 @@
 //
 // reference_phase_loop: steers the nco onto the primary; lock detector, hold-over, re-acquisition.
 //
-//   increment = integral + kp e,  integral += ki e  (and += kf (e - e_last) while unlocked), e = phase error
-//   in turns
+//   increment = integral + kp e,  integral += ki e  (and += kf (e - e_last) while unlocked and far off), e =
+//   phase error in turns
 //
 // in       phase error Q0.32 turns, amplitude Q2.32; gains Q-6.30 (kp, kf), Q-16.40 (ki)
 // out      increment Q1.48 turns a sample, in force one tick later
@@ -42,7 +42,9 @@ class ReferencePhaseLoop {
     if (low) {
       increment_ = integral_;
     } else {
-      if (!locked_) integral_ = add(integral_, correction(change * r.loop_frequency), saturated);
+      if (!locked_ && !inside<config::steering_window_log2>(raw(change))) {
+        integral_ = add(integral_, correction(change * r.loop_frequency), saturated);
+      }
       integral_ = add(integral_, correction(e * r.loop_integral), saturated);
       increment_ = add(integral_, correction(e * r.loop_proportional), saturated);
       count(raw(e), static_cast<std::int32_t>(raw(r.lock_count)));
@@ -66,9 +68,13 @@ class ReferencePhaseLoop {
   static Increment add(const Increment& a, const Increment& b, bool& saturated) {
     return clip<Increment, Clipped<config::increment>>(a + b, saturated);
   }
+  /// -2^Log2 <= angle < 2^Log2, in units of 2^-32 turn.
+  template <int Log2>
+  static bool inside(std::int64_t angle) {
+    return angle >= -(std::int64_t{1} << Log2) && angle < (std::int64_t{1} << Log2);
+  }
   void count(std::int64_t error, std::int32_t limit) {
-    constexpr std::int64_t window = std::int64_t{1} << config::lock_window_log2;
-    if (error >= -window && error < window) {
+    if (inside<config::lock_window_log2>(error)) {
       counter_ = counter_ + 1 < limit ? counter_ + 1 : limit;
     } else {
       counter_ = counter_ > config::lock_penalty ? counter_ - config::lock_penalty : 0;

@@ -2,6 +2,15 @@
 #include "golden/chain/reference_phase_loop.hpp"
 
 namespace hemi::golden {
+namespace {
+
+/// angle in [-w, w) turns, w = 2^log2 of the angle word's unit.
+bool within(double angle, int log2) {
+  const double window = power_of_two(log2 - config::angle.fraction);
+  return -window <= angle && angle < window;
+}
+
+}  // namespace
 
 void ReferencePhaseLoop::steer(double phase_error, double difference) {
   // A gain of 24 bits times an angle of 32 bits can need 54: hence the product that is rounded as a whole.
@@ -9,16 +18,16 @@ void ReferencePhaseLoop::steer(double phase_error, double difference) {
     const double step = arithmetic_.round_product(error, gain, config::increment.fraction);
     return arithmetic_.saturate(sum + step, config::increment, clipped_);
   };
-  if (!locked_) integral_ = add(integral_, difference, settings_.frequency);
+  if (!locked_ && !within(difference, config::steering_window_log2)) {
+    integral_ = add(integral_, difference, settings_.frequency);
+  }
   integral_ = add(integral_, phase_error, settings_.integral);
   increment_ = add(integral_, phase_error, settings_.proportional);
 }
 
 void ReferencePhaseLoop::judge(double phase_error) {
-  const double window = power_of_two(config::lock_window_log2 - config::angle.fraction);
-  const bool inside = -window <= phase_error && phase_error < window;
-  counter_ = inside ? std::min(counter_ + 1.0, settings_.lock_count)
-                    : std::max(counter_ - config::lock_penalty, 0.0);
+  counter_ = within(phase_error, config::lock_window_log2) ? std::min(counter_ + 1.0, settings_.lock_count)
+                                                           : std::max(counter_ - config::lock_penalty, 0.0);
 }
 
 void ReferencePhaseLoop::tick(const Polar& detected) {

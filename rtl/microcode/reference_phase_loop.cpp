@@ -2,7 +2,8 @@
 //
 // reference_phase_loop: steers the nco onto the primary; lock detector, hold-over, re-acquisition.
 //
-//   increment = integral + kp e,  integral += ki e  (+ kf (e - e_last) while unlocked), e = phase_error
+//   increment = integral + kp e,  integral += ki e  (+ kf (e - e_last) while unlocked and far off), e =
+//   phase_error
 //
 // in       phase_error Q0.32 turns, amplitude Q2.32; gains kp, kf, ki
 // out      pending Q1.48 turns a sample: in force one tick later
@@ -33,10 +34,18 @@ void filter(Assembler& m) {
   const Word change = m.word("error_change");
   m.subtract(change, error, m.word("last_error")).wrap(config::angle);
   m.move(m.word("last_error"), error);
+  // Near the carrier nothing steers: the change counts as zero.
+  const Word far = m.constant(std::int64_t{1} << config::steering_window_log2);
+  const Word steering = m.word("steering_change");
+  m.clear(steering);
+  m.add(m.nowhere(), change, far).set_negative();
+  m.move(steering, change).if_negative();
+  m.compare(change, far);
+  m.move(steering, change).if_not_negative();
   m.subtract(m.word("low"), m.word("amplitude"), m.reg(config::reg_amplitude_threshold));
   m.move(m.word("low"), m.word("low")).floor(word_bits);
   m.subtract(m.nowhere(), m.word("low"), m.word("locked")).set_negative();
-  steer(m, integral, change, config::reg_loop_frequency);
+  steer(m, integral, steering, config::reg_loop_frequency);
   m.test(m.word("low"));
   steer(m, integral, error, config::reg_loop_integral);
   steer(m, pending, error, config::reg_loop_proportional);
