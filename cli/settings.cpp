@@ -73,6 +73,17 @@ void set_derivative(Setup& setup, std::optional<double> window_s) {
   setup.derivative_window_s = block * config::derivative_blocks * setup.output_period_s;
 }
 
+/// The inverse polynomial of the highest order whose coefficients fit their registers: over a narrow range of
+/// frequency those of high order grow out of them.
+calibration::InversePolynomial fit_inverse_that_fits(const calibration::FrequencyPolynomial& frequency,
+                                                     double reference_hz, double span_hz) {
+  const double limit = std::ldexp(1.0, config::temperature.width - 1 - config::temperature.fraction);
+  for (Eigen::Index order = calibration::kMaxInverseOrder;; --order) {
+    const auto inverse = calibration::fit_inverse(frequency, reference_hz, order, span_hz);
+    if (order == 1 || inverse.coefficients_degc.cwiseAbs().maxCoeff() < limit) return inverse;
+  }
+}
+
 /// Thermometer and calibrated range from f(T); the offset is in units of 64 nominal Hz around the reference.
 void set_thermometer(Setup& setup, const InstrumentModel& model, double reference_hz) {
   double low = default_low_degc, high = default_high_degc;
@@ -101,8 +112,7 @@ void set_thermometer(Setup& setup, const InstrumentModel& model, double referenc
                     high),
         "narrow frequency.calibrated_degc");
   }
-  const auto inverse =
-      calibration::fit_inverse(frequency, reference_hz, calibration::kMaxInverseOrder, span_hz);
+  const auto inverse = fit_inverse_that_fits(frequency, reference_hz, span_hz);
   for (Eigen::Index i = 0; i < inverse.coefficients_degc.size(); ++i) {
     setup.values[static_cast<std::size_t>(config::reg_thermometer_0 + i)] = inverse.coefficients_degc[i];
   }

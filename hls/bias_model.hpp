@@ -5,8 +5,8 @@
 //   B = B0 + k1 o + k2 o^2 + k3 o^3 + k4 g + k5 g^2 + k6 g^3 + k7 o g + k8 o^2 g + k9 o g^2,  compensated =
 //   (rate - B) (1 + correction)
 //
-// in       offset o Q1.23 (64 Hz), derivative g Q1.23, rate Q20.16 deg/h; coefficients Q17.13 deg/h;
-// correction out      bias Q17.13 deg/h, compensated rate Q20.16 deg/h latency  within the output
+// in       offset o Q1.23 (64 Hz), derivative g Q1.23, rate Q20.16 deg/h; coefficients Q19.13 deg/h;
+// correction out      bias Q19.13 deg/h, compensated rate Q20.16 deg/h latency  within the output
 // rounding each product half up to 2^-13 deg/h, each sum clipped (flag); correction product half up to 2^-16
 // source   the paper, Eq. (21)
 #ifndef HEMI_HLS_BIAS_MODEL_HPP

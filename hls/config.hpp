@@ -69,8 +69,8 @@ constexpr Format block_sum = {44, 25};
 constexpr Format slope_sum = {51, 25};      ///< numerator of the least-squares slope
 constexpr Format slope_word = {30, 29};     ///< the numerator after its programmable shift
 constexpr Format derivative = {24, 23};     ///< df/dt over its programmable full scale
-constexpr Format temperature = {30, 20};    ///< degC
-constexpr Format bias = {30, 13};           ///< deg/h
+constexpr Format temperature = {32, 19};    ///< degC
+constexpr Format bias = {32, 13};           ///< deg/h
 constexpr Format scale_operand = {32, 11};  ///< deg/h, operand of the scale-factor correction
 
 constexpr int offset_span_hz = 64;     ///< nominal Hz at offset = 1

@@ -5,7 +5,7 @@
 //   T = sum_i t_i o^i, i = 0..5, o = (f - f_reference) / 64 Hz
 //
 // in       frequency Q17.29 nominal Hz
-// out      offset o Q1.23 (7.6 uHz), temperature Q10.20 degC (1e-6 degC)
+// out      offset o Q1.23 (7.6 uHz), temperature Q13.19 degC (1.9e-6 degC)
 // latency  within the output
 // rounding offset half up, clipped beyond 64 Hz (flag); each Horner step half up, clipped (flag)
 // source   the paper, Eq. (16)-(18), inverted

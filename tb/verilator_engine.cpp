@@ -21,8 +21,9 @@ constexpr int word_bits = 54;
 constexpr std::uint64_t word_mask = (std::uint64_t{1} << word_bits) - 1;
 
 constexpr std::array<config::Format, config::record_words> record_formats = {
-    config::frequency, config::temperature, config::derivative, config::amplitude_sum, config::phase_error_sum,
-    config::bias,      config::rate,        config::rate,       config::Format{33, 0}};
+    config::frequency,       config::temperature, config::derivative, config::amplitude_sum,
+    config::phase_error_sum, config::bias,        config::rate,       config::rate,
+    config::Format{33, 0}};
 
 std::int64_t extend(std::uint64_t word) {
   return static_cast<std::int64_t>(word << (64 - word_bits)) >> (64 - word_bits);
@@ -95,10 +96,14 @@ class RtlEngine : public Engine {
   static constexpr int patience = 100000;
 
   static constexpr std::uint32_t adc_mask() {
-    return (std::uint32_t{1} << (sizeof(Model::sample_x_i) == 2 ? config::Reference::adc_bits : config::Wide::adc_bits)) - 1;
+    return (std::uint32_t{1} << (sizeof(Model::sample_x_i) == 2 ? config::Reference::adc_bits
+                                                                : config::Wide::adc_bits)) -
+           1;
   }
 
-  bool happens(double probability) { return probability > 0 && std::bernoulli_distribution(probability)(random_); }
+  bool happens(double probability) {
+    return probability > 0 && std::bernoulli_distribution(probability)(random_);
+  }
 
   void edge(bool level) {
     model_.clk_i = level;

@@ -31,7 +31,8 @@ class Thermometer {
         out.out_of_range);
     out.temperature_c = values_[config::reg_thermometer_5];
     for (std::size_t i = config::reg_thermometer_5; i-- > config::reg_thermometer_0;) {
-      const double product = arithmetic_.round(out.temperature_c * out.offset, config::temperature.fraction);
+      const double product =
+          arithmetic_.round_product(out.temperature_c, out.offset, config::temperature.fraction);
       out.temperature_c = arithmetic_.saturate(product + values_[i], config::temperature, out.clipped);
     }
     return out;
@@ -126,7 +127,7 @@ class BiasModel {
     using namespace config;
     Output out{0.0, 0.0, false, false};
     const auto step = [&](double factor, double variable, double addend) {
-      return arithmetic_.saturate(arithmetic_.round(factor * variable, bias.fraction) + addend, bias,
+      return arithmetic_.saturate(arithmetic_.round_product(factor, variable, bias.fraction) + addend, bias,
                                   out.bias_clipped);
     };
     const auto& k = values_;

@@ -60,7 +60,8 @@ void allocate(const Assembler& m, Schedule& s) {
   std::sort(lives.begin(), lives.end(), [](const Life& a, const Life& b) { return a.first < b.first; });
   std::vector<Life> owners;  // the last word of each shared address
   for (const Life& l : lives) {
-    const auto free = std::find_if(owners.begin(), owners.end(), [&](const Life& o) { return o.last < l.first; });
+    const auto free =
+        std::find_if(owners.begin(), owners.end(), [&](const Life& o) { return o.last < l.first; });
     const auto place = free == owners.end() ? owners.insert(owners.end(), l) : free;
     *place = l;
     s.addresses[l.word] = next + static_cast<int>(place - owners.begin());

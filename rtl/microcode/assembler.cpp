@@ -13,21 +13,16 @@ namespace {
 constexpr std::size_t max_modes = 16;
 
 std::vector<Mode> all_modes(int cic_bits) {
-  std::vector<Mode> modes = {{word_bits, false},
-                             {cic_bits, false},
-                             {config::phase.width, false},
-                             {config::angle.width, false},
-                             {config::tick_phase.width, false},
-                             {config::total_phase.width, false},
-                             {config::rate_accumulator.width, false},
-                             {config::block_sum.width, false},
-                             {config::increment.width, true},
-                             {config::baseband.width, true},
-                             {config::rate_tick.width, true},
-                             {config::rate.width, true},
-                             {config::offset.width, true},
-                             {config::fine_offset.width, true},
-                             {config::bias.width, true}};
+  std::vector<Mode> modes = {{word_bits, false}, {cic_bits, false}};
+  for (const config::Format format : {config::phase, config::angle, config::tick_phase, config::total_phase,
+                                      config::frequency, config::rate_accumulator, config::block_sum}) {
+    modes.push_back({format.width, false});
+  }
+  for (const config::Format format :
+       {config::increment, config::baseband, config::rate_tick, config::rate, config::offset,
+        config::fine_offset, config::temperature, config::slope_word, config::derivative, config::bias}) {
+    modes.push_back({format.width, true});
+  }
   std::sort(modes.begin() + 1, modes.end());
   modes.erase(std::unique(modes.begin(), modes.end()), modes.end());
   return modes;
@@ -40,9 +35,6 @@ Assembler::Assembler(Instrument instrument)
       modes_(all_modes(instrument_.cic_bits)),
       next_word_(symbolic_base),
       next_constant_(port_base - 1) {
-  static_assert(config::offset.width == config::derivative.width && config::bias.width == config::temperature.width &&
-                    config::bias.width == config::slope_word.width && config::total_phase.width == config::frequency.width,
-                "formats that share a mode");
   if (modes_.size() > max_modes) throw std::logic_error("more modes than an instruction can name");
 }
 
@@ -84,8 +76,9 @@ int Assembler::mode_code(Mode mode) const {
 
 std::string Assembler::name_of(Word word) const {
   static const std::map<int, std::string> ports = {
-      {product_port.address, "product"},   {lookup_port.address, "looked_up"}, {sample_x_port.address, "sample_x"},
-      {sample_y_port.address, "sample_y"}, {gap_port.address, "gap"},          {live_port.address, "live"}};
+      {product_port.address, "product"},   {lookup_port.address, "looked_up"},
+      {sample_x_port.address, "sample_x"}, {sample_y_port.address, "sample_y"},
+      {gap_port.address, "gap"},           {live_port.address, "live"}};
   if (word.address < config::register_count) return config::registers[word.address].name;
   if (word.address == telemetry_frequency_address) return "telemetry_frequency";
   if (word.address == telemetry_rate_address) return "telemetry_rate";

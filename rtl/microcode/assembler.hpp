@@ -46,7 +46,9 @@ struct Word {
 };
 constexpr int port_base = 248;
 constexpr int symbolic_base = 1000;
-constexpr bool is_port(Word word) { return word.address >= port_base && word.address < state_words; }
+constexpr bool is_port(Word word) {
+  return word.address >= port_base && word.address < state_words;
+}
 constexpr Word product_port{port_base};       ///< multiplier, 56 bits
 constexpr Word lookup_port{port_base + 1};    ///< magnitude of the sine or cosine that was looked up
 constexpr Word sample_x_port{port_base + 2};  ///< the sample being worked on

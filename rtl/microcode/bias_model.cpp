@@ -5,8 +5,8 @@
 //   B = B0 + k1 o + k2 o^2 + k3 o^3 + k4 g + k5 g^2 + k6 g^3 + k7 o g + k8 o^2 g + k9 o g^2
 //   compensated = (rate - B) (1 + scale_correction)
 //
-// in       offset, derivative Q1.23; coefficients Q17.13 deg/h; rate Q20.16 deg/h
-// out      bias Q17.13, compensated Q20.16 deg/h
+// in       offset, derivative Q1.23; coefficients Q19.13 deg/h; rate Q20.16 deg/h
+// out      bias Q19.13, compensated Q20.16 deg/h
 // clocks   23 an output
 // rounding half up and clipped at each step (bias_saturated, compensation_saturated)
 #include "rtl/microcode/blocks.hpp"

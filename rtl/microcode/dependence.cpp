@@ -15,7 +15,9 @@ bool reads_sample(const Instruction& i) {
   return i.b == sample_x_port || i.b == sample_y_port || i.b == gap_port;
 }
 
-bool needs_order(const Instruction& i) { return i.control == Control::emit || reads_sample(i); }
+bool needs_order(const Instruction& i) {
+  return i.control == Control::emit || reads_sample(i);
+}
 
 int memory_distance(const Instruction& first, const Instruction& second, Word nowhere) {
   int clocks = 0;
@@ -48,16 +50,21 @@ int status_distance(const Instruction& first, const Instruction& second) {
 }  // namespace
 
 bool reads_a(const Instruction& i) {
-  return i.condition != Condition::never || i.operation == Operation::multiply || i.operation == Operation::look_up;
+  return i.condition != Condition::never || i.operation == Operation::multiply ||
+         i.operation == Operation::look_up;
 }
 
 bool reads_b(const Instruction& i) {
   return !is_port(i.b) && (i.condition != Condition::never || i.operation == Operation::multiply);
 }
 
-bool reads(const Instruction& i, Word word) { return (reads_a(i) && i.a == word) || (reads_b(i) && i.b == word); }
+bool reads(const Instruction& i, Word word) {
+  return (reads_a(i) && i.a == word) || (reads_b(i) && i.b == word);
+}
 
-bool writes(const Instruction& i, Word nowhere) { return i.condition != Condition::never && !(i.dst == nowhere); }
+bool writes(const Instruction& i, Word nowhere) {
+  return i.condition != Condition::never && !(i.dst == nowhere);
+}
 
 int result_latency(const Instruction& i) {
   if (i.operation == Operation::multiply) return latency::product;

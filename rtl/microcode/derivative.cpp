@@ -4,16 +4,17 @@
 //
 //   slope_sum = sum_{j=0..7} (15 - 2j) (b[15-j] - b[j]);  derivative = slope_sum 2^-slope_shift slope_gain
 //
-// in       frequency - frequency_reference Q18.29, once an output; not_good: negative where it must not be used
-// out      derivative Q1.23 of its full scale; moves once a block
-// clocks   12 an output, 50 more a block
+// in       frequency - frequency_reference Q18.29, once an output; not_good: negative where it must not be
+// used out      derivative Q1.23 of its full scale; moves once a block clocks   12 an output, 50 more a block
 // rounding half up and clipped (derivative_saturated); the block sum wraps
 #include "rtl/microcode/blocks.hpp"
 
 namespace hemi::microcode {
 namespace {
 
-Word history(Assembler& m, int block) { return m.word("block", block); }
+Word history(Assembler& m, int block) {
+  return m.word("block", block);
+}
 
 /// sum (15 - 2j) e_j = sum e_j + 2 sum (7 - j) e_j; the second is the sum of the partial sums of the first.
 Word slope_sum(Assembler& m) {
@@ -48,7 +49,8 @@ void derivative_sum(Assembler& m) {
       .if_not_negative();
   m.add(sum, sum, fine).wrap(config::block_sum).if_not_negative();
   m.add(count, count, m.constant(1)).if_not_negative();
-  for (const char* name : {"block_sum", "block_count", "fill", "derivative"}) m.clear(m.word(name)).if_negative();
+  for (const char* name : {"block_sum", "block_count", "fill", "derivative"})
+    m.clear(m.word(name)).if_negative();
   m.move(m.nowhere(), m.reg(config::reg_log2_block)).then(Control::load_shift);
   m.move(m.word("blocks_done"), count).floor(variable_shift);
   m.compare(m.word("blocks_done"), m.constant(1));

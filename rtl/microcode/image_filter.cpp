@@ -7,7 +7,8 @@
 // in       u = cic_.. Q1.27
 // out      baseband_.. Q1.27
 // clocks   48 a tick
-// rounding half up, once: (8 w + v) / 64 with w = 2 a - b + 4 v, a = u + u[-4], b = u[-1] + u[-3], v = u[-2], and
+// rounding half up, once: (8 w + v) / 64 with w = 2 a - b + 4 v, a = u + u[-4], b = u[-1] + u[-3], v = u[-2],
+// and
 //          rounding w + floor(v / 8) at 3 bits is rounding 8 w + v at 6
 #include "rtl/microcode/blocks.hpp"
 

@@ -17,14 +17,18 @@ std::string operand(const Assembler& m, const Instruction& i) {
 std::string arithmetic(const Assembler& m, const Instruction& i) {
   static const char* const signs[] = {"+", "-", "+/-", "-/+", "+mirror", "^"};
   if (i.control == Control::jump) return "jump " + i.target;
-  if (i.operation == Operation::multiply) return fmt::format("product = {} * {}", m.name_of(i.a), m.name_of(i.b));
-  if (i.operation == Operation::look_up) return fmt::format("look_up {} {}", i.shift ? "cos" : "sin", m.name_of(i.a));
+  if (i.operation == Operation::multiply)
+    return fmt::format("product = {} * {}", m.name_of(i.a), m.name_of(i.b));
+  if (i.operation == Operation::look_up)
+    return fmt::format("look_up {} {}", i.shift ? "cos" : "sin", m.name_of(i.a));
   if (i.condition == Condition::never) return "-";
-  return fmt::format("{} = {} {} {}", m.name_of(i.dst), m.name_of(i.a), signs[static_cast<int>(i.operation)], operand(m, i));
+  return fmt::format("{} = {} {} {}", m.name_of(i.dst), m.name_of(i.a), signs[static_cast<int>(i.operation)],
+                     operand(m, i));
 }
 
 std::string remarks(const Instruction& i) {
-  static const char* const controls[] = {"", "; yield", "", "; emit", "; give_back", "; end", "; take", "; load_shift"};
+  static const char* const controls[] = {"",       "; yield",     "", "; emit", "; give_back", "; end",
+                                         "; take", "; load_shift"};
   const bool computes = i.condition != Condition::never && i.control != Control::jump;
   std::string text;
   if (computes) text += fmt::format(" {}{}", i.mode.saturate ? "sat" : "", i.mode.width);
@@ -56,11 +60,13 @@ std::string summary(const Assembler& m, const Schedule& s) {
     used += i.condition != Condition::never || i.operation != Operation::add || i.control != Control::next;
   }
   std::string text = fmt::format("instrument {}\n", m.instrument().name);
-  text += fmt::format("program words {} ({} in use), {} bits each\n", s.program.size(), used, instruction_bits);
+  text +=
+      fmt::format("program words {} ({} in use), {} bits each\n", s.program.size(), used, instruction_bits);
   text += fmt::format("state words {} for {} names, constants {}, of {}\n", s.state_end, m.words().size(),
                       m.constants().size(), port_base);
   for (const Region& region : m.regions()) {
-    text += fmt::format("clocks {:10} {:4}  ({} instructions)\n", region.label, s.clocks.at(region.label), region.lines.size());
+    text += fmt::format("clocks {:10} {:4}  ({} instructions)\n", region.label, s.clocks.at(region.label),
+                        region.lines.size());
   }
   text += fmt::format("longest slice {}, sample and slice {} of {}\n", s.longest_slice,
                       s.longest_slice + s.clocks.at("sample"), clocks_per_sample);

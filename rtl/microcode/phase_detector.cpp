@@ -2,7 +2,8 @@
 //
 // phase_detector: CORDIC vectoring of the primary; the secondary turned by the demodulation phase.
 //
-//   amplitude = K |I + jQ|, phase_error = atan2(Q, I) / (2 pi);  in_phase + j quadrature = (yi + j yq) e^(-j phase)
+//   amplitude = K |I + jQ|, phase_error = atan2(Q, I) / (2 pi);  in_phase + j quadrature = (yi + j yq) e^(-j
+//   phase)
 //
 // in       baseband_.. Q1.27; demodulation_cos, _sin Q2.22
 // out      amplitude Q2.32, K = prod sqrt(1 + 4^-i); phase_error Q0.32 turns; secondary Q1.27
@@ -36,7 +37,8 @@ void vectoring(Assembler& m) {
   for (int i = 0; i < config::cordic_iterations; ++i) {
     const int from = i % 2;
     const bool last = i + 1 == config::cordic_iterations;
-    Instruction& new_x = m.subtract_if_negative(last ? m.word("amplitude") : x[1 - from], x[from], y[from]).floor(i);
+    Instruction& new_x =
+        m.subtract_if_negative(last ? m.word("amplitude") : x[1 - from], x[from], y[from]).floor(i);
     Instruction& new_z = m.subtract_if_negative(z, z, m.constant(cordic_angle(i))).wrap(config::angle);
     if (last) {
       new_x.send_to(config::tap_amplitude);

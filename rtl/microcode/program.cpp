@@ -11,7 +11,8 @@ void start(Assembler& m) {
   Region& region = m.region("start");
   region.background = false;
   m.block("reference_phase_loop");
-  for (const char* name : {"integral", "pending", "increment"}) m.move(m.word(name), m.reg(config::reg_nco_start));
+  for (const char* name : {"integral", "pending", "increment"})
+    m.move(m.word(name), m.reg(config::reg_nco_start));
 }
 
 void sample(Assembler& m) {
@@ -95,8 +96,8 @@ void telemetry(Assembler& m) {
 void record(Assembler& m) {
   m.region("record").in_order = true;
   m.block("output");
-  for (const char* name : {"frequency", "temperature", "derivative", "amplitude_word", "error_word", "bias", "rate",
-                           "compensated", "status"}) {
+  for (const char* name : {"frequency", "temperature", "derivative", "amplitude_word", "error_word", "bias",
+                           "rate", "compensated", "status"}) {
     m.move(m.nowhere(), m.word(name)).then(Control::emit);
   }
 }

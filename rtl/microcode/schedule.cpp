@@ -33,7 +33,8 @@ class ListScheduler {
     for (std::size_t i = lines_.size(); i-- > 0;) {
       height_[i] = result_latency(lines_[i]);
       for (std::size_t j = i + 1; j < lines_.size(); ++j) {
-        const int d = exact(i) && j == i + 1 ? result_latency(lines_[i]) : distance(lines_[i], lines_[j], nowhere_);
+        const int d =
+            exact(i) && j == i + 1 ? result_latency(lines_[i]) : distance(lines_[i], lines_[j], nowhere_);
         if (d > 0) height_[i] = std::max(height_[i], d + height_[j]);
       }
       const bool late = (reads_a(lines_[i]) && late_words.count(lines_[i].a.address) > 0) ||
@@ -145,9 +146,10 @@ class Placer {
     return region.jump_target.empty() ? latency::word - 1 : std::max(latency::word - 1, latency::jump);
   }
 
-  /// A sample may not come between a product and its use, nor before the words it shares are read and written.
-  void forbid_yields(const Region& region, const std::vector<Instruction>& lines, const std::vector<int>& clocks,
-                     std::vector<bool>& may_yield) const {
+  /// A sample may not come between a product and its use, nor before the words it shares are read and
+  /// written.
+  void forbid_yields(const Region& region, const std::vector<Instruction>& lines,
+                     const std::vector<int>& clocks, std::vector<bool>& may_yield) const {
     const auto forbid = [&](int from, int to) {
       for (int t = std::max(from, 0); t < to; ++t) may_yield[t] = false;
     };
@@ -169,7 +171,8 @@ class Placer {
   void finish(const Region& region, Placed& placed) const {
     Instruction& last = placed.places.back();
     if (ends_itself(region)) {
-      if (last.control != Control::next) throw std::logic_error("last place of " + region.label + " is taken");
+      if (last.control != Control::next)
+        throw std::logic_error("last place of " + region.label + " is taken");
       last.control = region.last;
     }
     if (region.jump_target.empty()) return;
@@ -225,11 +228,13 @@ void check_lengths(const Assembler& m, const Schedule& s) {
   const int sample = s.clocks.at("sample");
   if (sample + s.longest_slice > clocks_per_sample) throw std::logic_error("a slice is too long");
   constexpr int clocks_per_word = 8;  // a record word through the machine and out
-  const int background = s.clocks.at("tick") + s.clocks.at("output") + s.clocks.at("finish") + s.clocks.at("block") +
-                         s.clocks.at("settle") + config::record_words * clocks_per_word;
+  const int background = s.clocks.at("tick") + s.clocks.at("output") + s.clocks.at("finish") +
+                         s.clocks.at("block") + s.clocks.at("settle") +
+                         config::record_words * clocks_per_word;
   // At the slowest clock each sample of the next tick leaves so much to the background of this one.
   const int room = (m.instrument().decimation - 1) * (clocks_per_sample - sample);
-  if (background > room) throw std::logic_error("the work of a tick and an output does not fit their samples");
+  if (background > room)
+    throw std::logic_error("the work of a tick and an output does not fit their samples");
 }
 
 }  // namespace

@@ -11,7 +11,8 @@
 
 namespace hemi::microcode {
 
-/// Clocks a sample that the background must leave to spare: 12 MHz at 100 kS/s has 120, two are for the hand-over.
+/// Clocks a sample that the background must leave to spare: 12 MHz at 100 kS/s has 120, two are for the
+/// hand-over.
 constexpr int clocks_per_sample = 118;
 
 struct Schedule {

@@ -21,11 +21,13 @@ void add_parameter(std::string& text, const std::string& name, int value) {
 
 template <class T>
 void add_code(std::string& text, const std::string& name, int width, T value) {
-  text += fmt::format("  localparam logic [{}:0] {} = {}'d{};\n", width - 1, name, width, static_cast<int>(value));
+  text += fmt::format("  localparam logic [{}:0] {} = {}'d{};\n", width - 1, name, width,
+                      static_cast<int>(value));
 }
 
 std::string word_literal(std::int64_t value) {
-  return fmt::format("54'h{:014x}", static_cast<std::uint64_t>(value) & ((std::uint64_t{1} << word_bits) - 1));
+  return fmt::format("54'h{:014x}",
+                     static_cast<std::uint64_t>(value) & ((std::uint64_t{1} << word_bits) - 1));
 }
 
 std::string add_fields() {
@@ -105,8 +107,10 @@ std::string package(const Assembler& m, const Schedule& s) {
   add_parameter(text, "TableDeltaBits", 12);
   const int bits = program_bits(s);
   add_parameter(text, "ProgramBits", bits);
-  for (const auto& [name, label] :
-       {std::pair{"EntryStart", "start"}, {"EntrySample", "sample"}, {"EntryTick", "tick"}, {"EntryTelemetry", "telemetry"}}) {
+  for (const auto& [name, label] : {std::pair{"EntryStart", "start"},
+                                    {"EntrySample", "sample"},
+                                    {"EntryTick", "tick"},
+                                    {"EntryTelemetry", "telemetry"}}) {
     add_code(text, name, bits, s.entries.at(label));
   }
   text += add_fields() + add_codes() + add_checked_codes();
@@ -136,8 +140,8 @@ std::string program_memory(const Assembler& m, const Schedule& s) {
   nothing.condition = Condition::never;
   for (std::size_t address = 0; address < depth; ++address) {
     const Instruction& i = address < s.program.size() ? s.program[address] : nothing;
-    text += fmt::format("    program_q[{}] = {}'h{:012x};\n    tap_q[{}] = 6'd{};\n", address, instruction_bits,
-                        encode(i, m, s), address, i.tap < 0 ? 63 : i.tap);
+    text += fmt::format("    program_q[{}] = {}'h{:012x};\n    tap_q[{}] = 6'd{};\n", address,
+                        instruction_bits, encode(i, m, s), address, i.tap < 0 ? 63 : i.tap);
   }
   return text + "  end\nendmodule\n";
 }
@@ -156,9 +160,10 @@ std::string mode_table(const Assembler& m) {
   for (std::size_t code = 0; code < m.modes().size(); ++code) {
     const Mode mode = m.modes()[code];
     const std::uint64_t keep = (std::uint64_t{1} << (mode.width - 1)) - 1;
-    text += fmt::format("      {}4'd{}: begin\n        keep_o = {};\n        saturate_o = 1'b{};\n      end\n",
-                        code == 0 ? "default, " : "", code, word_literal(static_cast<std::int64_t>(keep)),
-                        mode.saturate ? 1 : 0);
+    text +=
+        fmt::format("      {}4'd{}: begin\n        keep_o = {};\n        saturate_o = 1'b{};\n      end\n",
+                    code == 0 ? "default, " : "", code, word_literal(static_cast<std::int64_t>(keep)),
+                    mode.saturate ? 1 : 0);
   }
   std::string fixed = text + "    endcase\n  end\nendmodule\n";
   const std::string odd = "default, 4'd0";

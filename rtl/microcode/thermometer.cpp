@@ -5,7 +5,7 @@
 //   offset = (frequency - frequency_reference) / 64 Hz;  temperature = sum_i thermometer_i offset^i, i = 0..5
 //
 // in       frequency Q17.29 nominal Hz
-// out      offset Q1.23, temperature Q10.20 degC
+// out      offset Q1.23, temperature Q13.19 degC
 // clocks   14 an output
 // rounding half up and clipped at each step (frequency_out_of_range, thermometer_saturated)
 // source   Horner's scheme
@@ -36,8 +36,10 @@ void thermometer(Assembler& m) {
     if (i == 0) step.send_to(config::tap_temperature);
     sum = temperature;
   }
-  m.subtract(m.nowhere(), offset, m.reg(config::reg_calibrated_low)).raise(config::status_out_of_calibrated_range);
-  m.subtract(m.nowhere(), m.reg(config::reg_calibrated_high), offset).raise(config::status_out_of_calibrated_range);
+  m.subtract(m.nowhere(), offset, m.reg(config::reg_calibrated_low))
+      .raise(config::status_out_of_calibrated_range);
+  m.subtract(m.nowhere(), m.reg(config::reg_calibrated_high), offset)
+      .raise(config::status_out_of_calibrated_range);
 }
 
 }  // namespace hemi::microcode

@@ -11,7 +11,9 @@ namespace {
 
 using namespace hemi;
 
-int decimation(bool wide) { return wide ? config::Wide::decimation : config::Reference::decimation; }
+int decimation(bool wide) {
+  return wide ? config::Wide::decimation : config::Reference::decimation;
+}
 
 /// Feeds both engines in chunks of odd sizes; fails at the first word that differs.
 void expect_equal(bool wide, tb::Engine& rtl, tb::Engine& hls, const std::vector<tb::SamplePair>& pairs,
@@ -31,7 +33,8 @@ void expect_equal(bool wide, tb::Engine& rtl, tb::Engine& hls, const std::vector
   hls.set_taps(nullptr);
   rtl.set_taps(nullptr);
   ASSERT_FALSE(scoreboard.mismatch()) << scoreboard.mismatch()->report("hls", "rtl");
-  ASSERT_EQ(records.size(), pairs.size() / static_cast<std::size_t>(decimation(wide) * config::ticks_per_output));
+  ASSERT_EQ(records.size(),
+            pairs.size() / static_cast<std::size_t>(decimation(wide) * config::ticks_per_output));
   ASSERT_EQ(records, expected);
 }
 
@@ -47,7 +50,8 @@ TEST_P(RtlEngine, EqualsHlsOverEveryHostileStretch) {
   std::vector<tb::Record> records;
   expect_equal(wide(), *rtl, *hls, tests::hostile_capture(wide(), 45000, 17), records);
   std::uint64_t seen = 0;
-  for (const tb::Record& record : records) seen |= static_cast<std::uint64_t>(record.words[config::word_status]);
+  for (const tb::Record& record : records)
+    seen |= static_cast<std::uint64_t>(record.words[config::word_status]);
   for (const auto bit : {config::status_unlocked, config::status_holdover, config::status_adc_overload,
                          config::status_sample_gap, config::status_out_of_calibrated_range,
                          config::status_derivative_invalid}) {
@@ -58,10 +62,11 @@ TEST_P(RtlEngine, EqualsHlsOverEveryHostileStretch) {
 TEST_P(RtlEngine, DoesNotDependOnGapsBackPressureOrClocks) {
   const auto pairs = tests::hostile_capture(wide(), 4000, 5);
   const double heavy = 0.97;
-  const tb::RtlOptions conditions[] = {{.seed = 3, .input_gap_probability = 0.99, .checks = true},
-                                       {.seed = 4, .back_pressure_probability = heavy, .checks = true},
-                                       {.seed = 5, .input_gap_probability = 0.9, .back_pressure_probability = 0.999},
-                                       {.clocks_per_sample = 120, .checks = true}};
+  const tb::RtlOptions conditions[] = {
+      {.seed = 3, .input_gap_probability = 0.99, .checks = true},
+      {.seed = 4, .back_pressure_probability = heavy, .checks = true},
+      {.seed = 5, .input_gap_probability = 0.9, .back_pressure_probability = 0.999},
+      {.clocks_per_sample = 120, .checks = true}};
   for (const tb::RtlOptions& options : conditions) {
     const auto rtl = tb::make_rtl_engine(wide(), options);
     const auto hls = tb::make_hls_engine(wide());
@@ -76,9 +81,9 @@ TEST_P(RtlEngine, TelemetryAtRailsAndInvalidRows) {
   const auto rtl = tb::make_rtl_engine(wide(), {.back_pressure_probability = 0.5, .checks = true});
   const auto hls = tb::make_hls_engine(wide());
   auto values = tests::busy_registers(wide(), 4410.0);
-  values[config::reg_bias_f3] = 65535.0;
-  values[config::reg_bias_df2] = -65536.0;
-  values[config::reg_thermometer_4] = 511.0;
+  values[config::reg_bias_f3] = 262143.0;
+  values[config::reg_bias_df2] = -262144.0;
+  values[config::reg_thermometer_4] = 4095.0;
   values[config::reg_slope_shift] = 0;
   tb::Scoreboard scoreboard(0);
   for (tb::Engine* engine : {rtl.get(), hls.get()}) engine->reset(values);
@@ -132,8 +137,9 @@ TEST_P(RtlEngine, RandomRegisters) {
   }
 }
 
-// Constant inputs at the rails under a nearly standing nco give basebands of 0.45 and more, which no tone does: turned
-// by c = s = 2 they clip, and 1023 x 625 of them exceed the rate word. An increment at its own rail clips at once.
+// Constant inputs at the rails under a nearly standing nco give basebands of 0.45 and more, which no tone
+// does: turned by c = s = 2 they clip, and 1023 x 625 of them exceed the rate word. An increment at its own
+// rail clips at once.
 TEST_P(RtlEngine, ReachesTheClipsThatNoToneReaches) {
   const int rail = 1 << ((wide() ? config::Wide::adc_bits : config::Reference::adc_bits) - 1);
   const std::vector<tb::SamplePair> pairs(60000, tb::SamplePair{rail - 1, -rail, false});
@@ -155,7 +161,8 @@ TEST_P(RtlEngine, ReachesTheClipsThatNoToneReaches) {
     std::vector<tb::Record> records;
     expect_equal(wide(), *rtl, *hls, pairs, records);
     if (HasFatalFailure()) return;
-    for (const tb::Record& record : records) seen |= static_cast<std::uint64_t>(record.words[config::word_status]);
+    for (const tb::Record& record : records)
+      seen |= static_cast<std::uint64_t>(record.words[config::word_status]);
   }
   for (const auto bit : {config::status_secondary_saturated, config::status_loop_saturated,
                          config::status_rate_saturated, config::status_compensation_saturated}) {
@@ -180,7 +187,8 @@ TEST_P(RtlEngine, ResetInMidStreamStartsAfresh) {
 TEST_P(RtlEngine, RecordComesOutWithoutFurtherSamples) {
   const auto rtl = tb::make_rtl_engine(wide());
   rtl->reset(tests::busy_registers(wide(), 4410.0));
-  const std::vector<tb::SamplePair> pairs(static_cast<std::size_t>(decimation(wide()) * config::ticks_per_output));
+  const std::vector<tb::SamplePair> pairs(
+      static_cast<std::size_t>(decimation(wide()) * config::ticks_per_output));
   std::vector<tb::Record> records;
   rtl->samples(std::span(pairs.data(), pairs.size() - 1), records);
   EXPECT_TRUE(records.empty());

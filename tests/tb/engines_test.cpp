@@ -57,9 +57,9 @@ TEST_P(Engines, TelemetryAtRailsAndInvalidRows) {
   const auto hls = tb::make_hls_engine(wide);
   auto values = tests::busy_registers(wide, 4410.0);
   // Coefficients at their rails, so that every clip is reached.
-  values[config::reg_bias_f3] = 65535.0;
-  values[config::reg_bias_df2] = -65536.0;
-  values[config::reg_thermometer_4] = 511.0;
+  values[config::reg_bias_f3] = 262143.0;
+  values[config::reg_bias_df2] = -262144.0;
+  values[config::reg_thermometer_4] = 4095.0;
   values[config::reg_slope_shift] = 0;
   for (auto* engine : {golden.get(), hls.get()}) engine->reset(values);
   std::mt19937_64 generator(23);
