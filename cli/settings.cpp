@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "cli/recording/error.hpp"
+#include "cli/register_check.hpp"
 #include "golden/calibration/inverse_polynomial.hpp"
 
 namespace hemi::cli {
@@ -52,7 +53,16 @@ void set_loop(Setup& setup) {
 /// slope_shift and slope_gain for blocks of M outputs: derivative = slope / full scale (docs/chain.md).
 void set_derivative(Setup& setup, std::optional<double> window_s) {
   const double wanted = window_s.value_or(default_window_s);
-  const double outputs = wanted / setup.output_period_s / config::derivative_blocks;
+  const double shortest_s = config::derivative_blocks * setup.output_period_s;
+  const double longest_s = std::ldexp(shortest_s, config::max_log2_block);
+  const double outputs = wanted / shortest_s;
+  // "About": the nearest of the windows that there are, by ratio.
+  constexpr double half_step = std::numbers::sqrt2;
+  if (window_s && !(wanted * half_step >= shortest_s && wanted <= longest_s * half_step)) {
+    throw InputError({}, fmt::format("no window of df/dt lasts about {} s", wanted),
+                     fmt::format("ask for a --window of {:.4g} s to {:.6g} s at outputs every {:.4g} s",
+                                 shortest_s, longest_s, setup.output_period_s));
+  }
   const int log2_block = static_cast<int>(
       std::clamp(std::lround(std::log2(std::max(outputs, 1.0))), 0L, long{config::max_log2_block}));
   const double block = std::ldexp(1.0, log2_block);
@@ -63,8 +73,8 @@ void set_derivative(Setup& setup, std::optional<double> window_s) {
   gain = std::ldexp(gain, shift);
   if (gain >= 1.0) {
     throw InputError({},
-                     fmt::format("a df/dt window of {} s is too short for outputs every {} s", wanted,
-                                 setup.output_period_s),
+                     fmt::format("a window of df/dt of {:.4g} s resolves no slope below {} Hz/s",
+                                 block * shortest_s, derivative_full_scale_hz_per_s),
                      "ask for a longer --window");
   }
   setup.values[config::reg_log2_block] = log2_block;
@@ -84,6 +94,26 @@ calibration::InversePolynomial fit_inverse_that_fits(const calibration::Frequenc
   }
 }
 
+/// The core sees +-64 nominal Hz about its reference: some of f(T) must lie there.
+void check_span(const InstrumentModel& model, const calibration::FrequencyPolynomial& frequency,
+                double reference_hz, double span_hz) {
+  const double ends_hz[] = {frequency.frequency_hz(frequency.min_degc()),
+                            frequency.frequency_hz(frequency.max_degc())};
+  const double lowest_hz = std::min(ends_hz[0], ends_hz[1]), highest_hz = std::max(ends_hz[0], ends_hz[1]);
+  if (!std::isfinite(lowest_hz) || !std::isfinite(highest_hz)) {
+    throw InputError({model.path, 0, 0, "frequency.coefficients_hz"},
+                     fmt::format("f(T) is not finite from {:g} to {:g} degC", frequency.min_degc(),
+                                 frequency.max_degc()),
+                     "check the coefficients and calibrated_degc");
+  }
+  if (reference_hz + span_hz > lowest_hz && reference_hz - span_hz < highest_hz) return;
+  throw InputError({model.path, 0, 0, model.bias ? "bias.reference_hz" : "frequency"},
+                   fmt::format("{:g} Hz, where the core's range of +-{:g} Hz has its middle, is far from "
+                               "f(T), which runs from {:g} to {:g} Hz",
+                               reference_hz, span_hz, lowest_hz, highest_hz),
+                   "expand the drift model about a frequency of f(T)");
+}
+
 /// Thermometer and calibrated range from f(T); the offset is in units of 64 nominal Hz around the reference.
 void set_thermometer(Setup& setup, const InstrumentModel& model, double reference_hz) {
   double low = default_low_degc, high = default_high_degc;
@@ -91,9 +121,9 @@ void set_thermometer(Setup& setup, const InstrumentModel& model, double referenc
   if (document.contains("frequency") && document["frequency"].contains("calibrated_degc")) {
     const auto& range = document["frequency"]["calibrated_degc"];
     if (!range.is_array() || range.size() != 2 || !range[0].is_number() || !range[1].is_number() ||
-        !(range[0] < range[1]))
+        !(range[0] < range[1]) || range[0] < -273.15 || range[1] > 1000.0)
       throw InputError({model.path, 0, 0, "frequency.calibrated_degc"}, "is no range",
-                       "write it as [lowest, highest]");
+                       "write it as [lowest, highest] in degC");
     low = range[0];
     high = range[1];
   }
@@ -112,6 +142,7 @@ void set_thermometer(Setup& setup, const InstrumentModel& model, double referenc
                     high),
         "narrow frequency.calibrated_degc");
   }
+  check_span(model, frequency, reference_hz, span_hz);
   const auto inverse = fit_inverse_that_fits(frequency, reference_hz, span_hz);
   for (Eigen::Index i = 0; i < inverse.coefficients_degc.size(); ++i) {
     setup.values[static_cast<std::size_t>(config::reg_thermometer_0 + i)] = inverse.coefficients_degc[i];
@@ -143,16 +174,13 @@ void set_compensation(Setup& setup, const InstrumentModel& model) {
       : model.frequency ? polynomial(model.frequency->coefficients_hz, 20.0 - model.frequency->reference_degc)
                         : 0.0;
   setup.values[config::reg_frequency_reference] = reference_hz * setup.rate_ratio;
-  if (model.frequency) {
-    set_thermometer(setup, model, reference_hz);
-  }
+  if (model.frequency) set_thermometer(setup, model, reference_hz);
   if (model.bias) set_bias(setup, model);
   setup.values[config::reg_scale_correction] = 1.0 / model.scale_factor - 1.0;
 }
 
-/// Without a model: offset 0 at the start frequency, no thermometer, no bias, every offset allowed.
-void set_open_range(Setup& setup, double start_hz) {
-  setup.values[config::reg_frequency_reference] = start_hz * setup.rate_ratio;
+/// Without f(T) every offset counts as calibrated.
+void set_open_range(Setup& setup) {
   setup.values[config::reg_calibrated_low] = -1.0;
   setup.values[config::reg_calibrated_high] = 1.0 - std::ldexp(1.0, -config::offset.fraction);
 }
@@ -187,21 +215,28 @@ Setup capture_setup(const recording::RawCapture& capture, const InstrumentModel*
                      "give --frequency HZ (within a few Hz), or a --model with its frequency polynomial");
   }
   // The tracker counts up to 16 turns a tick; the demodulator's image filter wants a few turns of 2f a tick.
+  // The frequency word ends at 65536 nominal Hz, which is less than 0.3 of the wide instrument's rate.
   const double turns = *start_hz / capture.sample_rate_hz;
-  if (!(turns >= 0.005 && turns <= 0.3)) {
+  const double word_end_hz =
+      std::ldexp(1.0, config::frequency.width - 1 - config::frequency.fraction) - config::offset_span_hz;
+  const double most_turns = std::min(0.3, std::floor(100.0 * word_end_hz / s.adc_rate_hz) / 100.0);
+  if (!(turns >= 0.005 && turns <= most_turns)) {
     throw InputError(
         {capture.path},
-        fmt::format("{} Hz at {} samples/s is {:.4g} of the ADC rate; the chain takes 0.005 to 0.3",
-                    *start_hz, capture.sample_rate_hz, turns),
-        "capture at a rate of 3.4 to 200 times the resonator's frequency");
+        fmt::format("{} Hz at {} samples/s is {:.4g} of the ADC rate; the chain takes 0.005 to {}", *start_hz,
+                    capture.sample_rate_hz, turns, most_turns),
+        fmt::format("capture at {:.1f} to 200 times the resonator's frequency; state a wrong rate with "
+                    "--adc-rate",
+                    std::ceil(10.0 / most_turns) / 10.0));
   }
   set_loop(setup);
   set_derivative(setup, window_s);
   setup.values[config::reg_nco_start] = turns;
-  if (model != nullptr)
-    set_compensation(setup, *model);
-  else
-    set_open_range(setup, *start_hz);
+  set_open_range(setup);
+  if (model != nullptr) set_compensation(setup, *model);
+  if (model == nullptr || (!model->bias && !model->frequency))
+    setup.values[config::reg_frequency_reference] = *start_hz * setup.rate_ratio;
+  check_registers(setup, model);
   return setup;
 }
 
@@ -213,6 +248,7 @@ Setup telemetry_setup(double sample_rate_hz, const InstrumentModel& model, std::
   }
   set_derivative(setup, window_s);
   set_compensation(setup, model);
+  check_registers(setup, &model);
   return setup;
 }
 

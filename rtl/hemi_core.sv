@@ -2,6 +2,10 @@
 
 /// The signal core: ADC samples or telemetry in, records out, registers on a write port, one clock. One sequenced
 /// datapath does all blocks; hemi_pkg and hemi_program make it one of the two instruments.
+///
+/// Clocks: 36 a sample, some 260 a tick and 250 an output (program.lst, summary.txt); 118 are enough for each sample.
+/// Area on the iCE40 UP5K (Yosys 0.23, nextpnr 0.4, reference instrument, taps unconnected): 1640 logic cells, 24 block
+/// RAMs, 5 multipliers; 31 MHz.
 module hemi_core (
     input  logic                   clk_i,                 // clock
     input  logic                   rst_ni,                // synchronous reset, active low

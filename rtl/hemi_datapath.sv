@@ -76,7 +76,8 @@ module hemi_datapath (
     sets_2_q       <= instruction_i[hemi_pkg::SetsNegativeLsb];
     event_2_q      <= instruction_i[hemi_pkg::EventLsb+:hemi_pkg::EventBits];
     from_product_q <= b_address == hemi_pkg::ProductPort;
-    from_port_q    <= (b_address[hemi_pkg::AddressBits-1:3] == hemi_pkg::ProductPort[hemi_pkg::AddressBits-1:3]) & (b_address != hemi_pkg::ProductPort);
+    from_port_q    <= (b_address[hemi_pkg::AddressBits-1:3] == hemi_pkg::ProductPort[hemi_pkg::AddressBits-1:3])
+                      & (b_address != hemi_pkg::ProductPort);
     port_q         <= port_d;
     mirror_q       <= mirror;
   end
@@ -84,7 +85,7 @@ module hemi_datapath (
   // Shift stage.
   logic                 negative_q, negate, execute;
   logic [hemi_pkg::ShiftBits-1:0] variable_q, distance;
-  logic [         55:0] product, b;
+  logic [         55:0] product, b_port, b_word, b;
   logic signed [  56:0] unshifted, shifted;
   logic [ hemi_pkg::WordBits-1:0] a_3_q;
   logic [         55:0] b_3_q;
@@ -109,7 +110,9 @@ module hemi_datapath (
       .negative_o (mirror)
   );
 
-  assign b = from_product_q ? product : from_port_q ? {{36{port_q[19]}}, port_q} : {{2{b_i[hemi_pkg::WordBits-1]}}, b_i};
+  assign b_port = {{36{port_q[19]}}, port_q};
+  assign b_word = {{2{b_i[hemi_pkg::WordBits-1]}}, b_i};
+  assign b = from_product_q ? product : from_port_q ? b_port : b_word;
   assign distance = distance_q == hemi_pkg::VariableShift ? variable_q : distance_q;
   assign unshifted = {b, 1'b0};
   assign shifted = unshifted >>> distance;

@@ -17,6 +17,7 @@ module hemi_nco_table (
   logic [                     31:0] line;
   logic [        hemi_pkg::TableBaseBits-1:0] base_q;
   logic [hemi_pkg::TableDeltaBits-1:0] step, step_q;
+  logic [hemi_pkg::TableDeltaBits+hemi_pkg::TableFineBits:0] delta, fraction;
   logic [hemi_pkg::TableFineBits:0] unused_fraction;
   logic [hemi_pkg::TableBaseBits-1:0] sum;
   logic unused_half;
@@ -31,7 +32,9 @@ module hemi_nco_table (
       .line_o   (line)
   );
 
-  assign {step, unused_fraction} = {{(hemi_pkg::TableFineBits + 1) {1'b0}}, line[31:hemi_pkg::TableBaseBits]} * {{hemi_pkg::TableDeltaBits{1'b0}}, fine_q, 1'b1};
+  assign delta = {{(hemi_pkg::TableFineBits + 1) {1'b0}}, line[31:hemi_pkg::TableBaseBits]};
+  assign fraction = {{hemi_pkg::TableDeltaBits{1'b0}}, fine_q, 1'b1};
+  assign {step, unused_fraction} = delta * fraction;
 
   always_ff @(posedge clk_i) begin
     fine_q      <= angle_i[hemi_pkg::TableFineBits-1:0] ^ {hemi_pkg::TableFineBits{mirror}};

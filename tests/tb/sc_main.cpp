@@ -2,7 +2,9 @@
 // GoogleTest's main for programs that link SystemC, whose library brings a main of its own.
 #include <gtest/gtest.h>
 
-extern "C" int sc_main(int, char**) { return 0; }
+extern "C" int sc_main(int, char**) {
+  return 0;
+}
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
