@@ -115,7 +115,8 @@ void WholeNumbers::loop(Word amplitude, Word phase_error) {
     return saturate(sum + round(error * r_[gain], drop), increment, status_loop_saturated);
   };
   if (!low) {
-    if (!locked_) integral_ = add(integral_, d, reg_loop_frequency);
+    const Word far = Word{1} << steering_window_log2;
+    if (!locked_ && (d < -far || d >= far)) integral_ = add(integral_, d, reg_loop_frequency);
     integral_ = add(integral_, phase_error, reg_loop_integral);
     pending_ = add(integral_, phase_error, reg_loop_proportional);
     const Word window = Word{1} << lock_window_log2;
