@@ -3,7 +3,9 @@
 
 #include <cmath>
 
+#include "cli/chain_run.hpp"
 #include "cli/commands.hpp"
+#include "cli/options.hpp"
 #include "cli/recording/channels.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/recording.hpp"
@@ -37,6 +39,7 @@ Eigen::VectorXd longest_stretch(const recording::Recording& recording, const std
 }
 
 int allan(const AllanOptions& options) {
+  refuse_settled_points(options.recording);
   const auto recording = recording::read_recording(options.recording);
   const auto& values = recording.require(options.channel, "the Allan deviation");
   const Eigen::VectorXd stretch = longest_stretch(recording, values);
@@ -45,11 +48,19 @@ int allan(const AllanOptions& options) {
     throw recording::InputError({options.recording, 0, 0, options.channel},
                                 "has no three samples without a gap between them", "record longer");
   }
+  if (options.average_s < interval_s) {
+    throw recording::InputError(
+        {options.recording},
+        fmt::format("samples every {:.6g} s have no averages over {:.6g} s", interval_s, options.average_s),
+        "ask for a longer --average");
+  }
+  print_notes(recording.notes);
   const std::string unit(recording::find_channel(options.channel)->unit);
   const auto result = calibration::allan_deviation(
       stretch, interval_s,
       options.decades ? calibration::TauSpacing::kDecade : calibration::TauSpacing::kOctave);
-  const bool stability = static_cast<double>(stretch.size()) * interval_s >= 2.0 * options.average_s;
+  const bool stability =
+      static_cast<double>(stretch.size()) >= 2.0 * std::round(options.average_s / interval_s);
   if (options.json) {
     recording::Json json{{"channel", options.channel},
                          {"unit", unit},
@@ -71,7 +82,7 @@ int allan(const AllanOptions& options) {
       json["bias_stability"] = {
           {"average_s", options.average_s},
           {"value", calibration::bias_stability(stretch, interval_s, options.average_s)}};
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", recording::json_text(json, 2));
     return exit_good;
   }
   fmt::print("overlapping Allan deviation of {} [{}], {} of {} samples every {:.6g} s\n", options.channel,
@@ -105,7 +116,7 @@ void add_allan(CLI::App& app, Job& job) {
   command->add_option("recording", options->recording, "telemetry, or an output of hemi run")->required();
   command->add_option("-c,--channel", options->channel, "which channel")->capture_default_str();
   command->add_option("--average", options->average_s, "averaging time of the bias stability [s]")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   command->add_flag("--decades", options->decades, "tau in decades instead of octaves");
   command->add_flag("--json", options->json, "result as JSON");

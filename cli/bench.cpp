@@ -9,6 +9,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/engines.hpp"
+#include "cli/options.hpp"
 #include "cli/recording/interrupt.hpp"
 #include "cli/settings.hpp"
 #include "tb/sc_fixed_chain.hpp"
@@ -111,7 +112,7 @@ int bench(const BenchOptions& options) {
                                    {"highest", r.pairs_per_s.back()}};
     }
     if (ratio) json["hls_over_sc_fixed"] = hls->median() / sc->median();
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", recording::json_text(json, 2));
   } else if (ratio) {
     fmt::print("hls is {:.0f} times as fast as the same chain on sc_fixed\n", hls->median() / sc->median());
   }
@@ -127,7 +128,7 @@ void add_bench(CLI::App& app, Job& job) {
   auto* command =
       app.add_subcommand("bench", "Sample pairs a second of each engine, reference instrument, one core");
   command->add_option("--seconds", options->seconds, "time for each engine [s]")
-      ->check(CLI::Range(0.05, 600.0))
+      ->check(number_between(0.05, 600.0))
       ->capture_default_str();
   command
       ->add_option("--repetitions", options->repetitions,

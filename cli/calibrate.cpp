@@ -6,9 +6,11 @@
 
 #include "cli/commands.hpp"
 #include "cli/drift_data.hpp"
-#include "cli/recording/csv_file.hpp"
+#include "cli/options.hpp"
 #include "cli/recording/error.hpp"
+#include "cli/recording/raw_capture.hpp"
 #include "cli/recording/write.hpp"
+#include "golden/calibration/linear_fit.hpp"
 #include "golden/calibration/order_study.hpp"
 #include "golden/calibration/settled_points.hpp"
 #include "tb/registers.hpp"
@@ -32,13 +34,6 @@ struct CalibrateOptions {
   int blocks = 8;
   bool json = false;
 };
-
-bool holds_settled_points(const std::string& path) {
-  recording::require_readable(path);
-  if (path.size() < 4 || path.substr(path.size() - 4) != ".csv") return false;
-  const auto names = recording::read_csv_header(path);
-  return std::find(names.begin(), names.end(), "settled_degc") != names.end();
-}
 
 // ---- f(T)
 // -----------------------------------------------------------------------------------------------------
@@ -73,12 +68,7 @@ std::string frequency_text(const calibration::FrequencyFit& fit, const calibrati
 
 void calibrate_frequency(const std::string& path, const CalibrateOptions& options, InstrumentModel& model,
                          std::string& text, recording::Json& json) {
-  calibration::SettledPoints points;
-  try {
-    points = calibration::read_settled_points(path, options.order.value_or(1));
-  } catch (const calibration::InputError& error) {
-    throw tb::FormatError(error.what());
-  }
+  const auto points = calibration::read_settled_points(path, options.order.value_or(1));
   const auto study = calibration::study_order(points, options.reference_degc);
   const Eigen::Index order = options.order ? *options.order : study.chosen;
   const auto fit = calibration::fit_frequency(points, order, options.reference_degc);
@@ -135,11 +125,16 @@ std::string scores_text(const DriftScores& scores, int blocks) {
 
 void calibrate_bias(const std::string& path, const CalibrateOptions& options, InstrumentModel& model,
                     std::string& text, recording::Json& json) {
+  if (recording::is_raw(path)) {
+    throw InputError({path}, "is a raw capture, where settled points or a chamber recording are expected",
+                     "run it through an engine first: hemi run");
+  }
   if (!model.frequency) {
     throw InputError(
         {path}, "a drift model needs f(T)",
         "give settled points first (CSV settled_degc,frequency_hz), or --base with a model that has them");
   }
+  check_stretch(options.from_s, options.to_s);
   const auto recording = recording::read_recording(path);
   const auto frequency = recording.find("frequency_hz");
   double reference_hz = 0.0;
@@ -190,30 +185,49 @@ void calibrate_bias(const std::string& path, const CalibrateOptions& options, In
        {{"in_sample_rms_dph", scores.cubic.in_sample_rms}, {"held_out_rms_dph", scores.cubic.held_out_rms}}}};
 }
 
+/// What the numbers of a file do not allow (too few different temperatures, a regressor that does not move)
+/// is bad input, told with the file's name.
+template <class Work>
+void on_data(const std::string& path, Work work) {
+  constexpr const char* remedy =
+      "check the units, --reference-degc and --reference-hz, or record a wider range";
+  try {
+    work();
+  } catch (const std::invalid_argument& error) {
+    throw InputError({path}, error.what(), remedy);
+  } catch (const std::domain_error& error) {
+    throw InputError({path}, error.what(), remedy);
+  } catch (const calibration::RankDeficiencyError& error) {
+    throw InputError({path}, error.what(), remedy);
+  }
+}
+
 int calibrate(const CalibrateOptions& options) {
+  refuse_overwriting({options.output}, options.inputs);
   InstrumentModel model;
   if (!options.base.empty()) model = recording::read_model(options.base);
   std::string text;
   recording::Json json;
   std::vector<std::string> recordings;
   for (const auto& path : options.inputs) {
-    if (holds_settled_points(path))
-      calibrate_frequency(path, options, model, text, json);
-    else
+    if (!holds_settled_points(path))
       recordings.push_back(path);
+    else
+      on_data(path, [&] { calibrate_frequency(path, options, model, text, json); });
   }
   if (recordings.size() > 1) {
     throw InputError({recordings[1]}, "a drift model is fitted to one recording, and this is the second",
                      "give settled points and one chamber recording");
   }
-  for (const auto& path : recordings) calibrate_bias(path, options, model, text, json);
+  for (const auto& path : recordings)
+    on_data(path, [&] { calibrate_bias(path, options, model, text, json); });
   if (!options.output.empty()) {
     recording::write_model(options.output, model);
     text += fmt::format("wrote {}\n", options.output);
     json["model"] = options.output;
   }
   if (options.json)
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", recording::json_text(json, 2));
   else
     fmt::print("{}", text);
   return exit_good;
@@ -239,12 +253,16 @@ void add_calibrate(CLI::App& app, Job& job) {
   command
       ->add_option("--reference-degc", options->reference_degc,
                    "temperature that f(T) is expanded about [degC]")
+      ->check(number_between(-273.15, 1000.0))
       ->capture_default_str();
-  command->add_option("--reference-hz", options->reference_hz,
-                      "frequency that the drift model is expanded about [Hz]; default: that at 20 degC");
+  command
+      ->add_option("--reference-hz", options->reference_hz,
+                   "frequency that the drift model is expanded about [Hz]; default: that at 20 degC")
+      ->check(positive_number());
   command->add_option("--from", options->from_s, "start of the stretch to fit [s]");
   command->add_option("--to", options->to_s, "end of it [s]");
-  command->add_option("--window", options->window_s, "window of df/dt [s], about; default 20");
+  command->add_option("--window", options->window_s, "window of df/dt [s], about; default 20")
+      ->check(positive_number());
   command->add_option("--blocks", options->blocks, "contiguous blocks for held-out scores; 0 for none")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();

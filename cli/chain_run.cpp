@@ -5,12 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <set>
 
 #include "cli/output.hpp"
+#include "cli/recording/csv_file.hpp"
+#include "cli/recording/error.hpp"
 #include "cli/recording/interrupt.hpp"
 #include "cli/recording/progress.hpp"
+#include "cli/recording/table.hpp"
 
 namespace hemi::cli {
 namespace {
@@ -18,7 +22,65 @@ namespace {
 constexpr std::size_t samples_a_chunk = 20000;
 constexpr std::size_t rows_a_chunk = 4096;
 
+/// InputError for a telemetry value that the core's word cannot hold; NaN passes.
+void check_word(double value, config::Format format, const recording::Recording& recording, std::size_t row,
+                const char* channel) {
+  const double limit = std::ldexp(1.0, format.width - 1 - format.fraction);
+  const double half_lsb = std::ldexp(0.5, -format.fraction);
+  if (std::isnan(value) || (value >= -limit && value < limit - half_lsb)) return;
+  throw recording::InputError({recording.path, 0, row + 1, channel},
+                              fmt::format("{:g} is more than the core's word holds, +-{:g}", value, limit),
+                              "correct it, or leave the cell empty: missing values are survived");
+}
+
 }  // namespace
+
+void print_notes(const std::vector<std::string>& notes) {
+  for (const auto& note : notes) fmt::print(stderr, "note: {}\n", note);
+}
+
+void print_gaps(const std::vector<recording::Gap>& gaps) {
+  constexpr std::size_t most = 5;
+  for (std::size_t i = 0; i < std::min(most, gaps.size()); ++i) {
+    fmt::print(stderr, "note: gap of {} samples between {} s and {} s\n", gaps[i].missing_samples,
+               gaps[i].start_s, gaps[i].end_s);
+  }
+  if (gaps.size() > most) fmt::print(stderr, "note: and {} more gaps\n", gaps.size() - most);
+}
+
+bool holds_settled_points(const std::string& path) {
+  recording::require_readable(path);
+  if (recording::file_kind(path) != recording::FileKind::kCsv) return false;
+  const auto names = recording::read_csv_header(path);
+  return std::find(names.begin(), names.end(), "settled_degc") != names.end();
+}
+
+void refuse_settled_points(const std::string& path) {
+  if (!holds_settled_points(path)) return;
+  throw recording::InputError({path, 0, 0, "settled_degc"}, "settled points where a recording is expected",
+                              "give them to hemi calibrate");
+}
+
+void refuse_overwriting(const std::vector<std::string>& written, const std::vector<std::string>& read) {
+  namespace fs = std::filesystem;
+  for (const auto& output : written) {
+    for (const auto& input : read) {
+      std::error_code code;
+      if (!fs::is_regular_file(output, code) || !fs::equivalent(output, input, code)) continue;
+      throw recording::InputError({output}, fmt::format("writing it would replace {}, which is read", input),
+                                  "give the output another name");
+    }
+  }
+}
+
+void require_an_output(const recording::RawCapture& capture, const Setup& setup) {
+  const auto needed = static_cast<std::size_t>(sampling(setup.wide).decimation * config::ticks_per_output);
+  if (capture.adc_x.size() >= needed) return;
+  throw recording::InputError({capture.path},
+                              fmt::format("{} sample pairs end before the first output, which takes {}",
+                                          capture.adc_x.size(), needed),
+                              "check that the capture is complete, or record longer");
+}
 
 std::vector<tb::SamplePair> sample_pairs(const recording::RawCapture& capture) {
   std::vector<tb::SamplePair> pairs(capture.adc_x.size());
@@ -56,6 +118,9 @@ TelemetryInput telemetry_input(const recording::Recording& recording,
   for (std::size_t i = 0; i < f.size(); ++i) {
     if (!std::isnan(f[i])) last = f[i];
     input.frequency_hz.push_back(last);
+    check_word(last, config::frequency, recording, i,
+               frequency != nullptr ? "frequency_hz" : "case_temp_degc, through f(T): frequency_hz");
+    check_word(rate[i], config::rate, recording, i, "rate_dph");
     input.frequency_valid.push_back(!std::isnan(f[i]) && after_gap.count(i) == 0);
     input.rate_dph.push_back(std::isnan(rate[i]) ? 0.0 : rate[i]);
     input.rate_valid.push_back(!std::isnan(rate[i]));

@@ -14,6 +14,24 @@
 
 namespace hemi::cli {
 
+/// One line each on stderr.
+void print_notes(const std::vector<std::string>& notes);
+
+/// Where samples are missing, on stderr: the first few gaps, and how many more there are.
+void print_gaps(const std::vector<recording::Gap>& gaps);
+
+/// A CSV file with a column settled_degc; InputError where it cannot be read.
+bool holds_settled_points(const std::string& path);
+
+/// InputError for a file of settled points where a recording is expected.
+void refuse_settled_points(const std::string& path);
+
+/// InputError where writing one of the files would replace one that is read.
+void refuse_overwriting(const std::vector<std::string>& written, const std::vector<std::string>& read);
+
+/// InputError for a capture that ends before its first output.
+void require_an_output(const recording::RawCapture& capture, const Setup& setup);
+
 /// A capture as sample pairs, gap flags included.
 std::vector<tb::SamplePair> sample_pairs(const recording::RawCapture& capture);
 

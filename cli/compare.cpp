@@ -9,9 +9,11 @@
 #include "cli/chain_run.hpp"
 #include "cli/commands.hpp"
 #include "cli/engines.hpp"
+#include "cli/options.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/interrupt.hpp"
 #include "cli/recording/progress.hpp"
+#include "cli/waves_file.hpp"
 #include "tb/registers.hpp"
 #include "tb/scoreboard.hpp"
 
@@ -44,6 +46,9 @@ Input read_input(const CompareOptions& options) {
     raw.sample_rate_hz = options.adc_rate_hz;
     const auto capture = recording::read_raw_capture(options.recording, raw);
     input.setup = capture_setup(capture, model ? &*model : nullptr, options.frequency_hz, std::nullopt);
+    require_an_output(capture, input.setup);
+    print_notes(capture.notes);
+    print_gaps(capture.gaps);
     input.pairs = sample_pairs(capture);
     return input;
   }
@@ -55,7 +60,27 @@ Input read_input(const CompareOptions& options) {
   const auto recording = recording::read_recording(options.recording);
   input.setup = telemetry_setup(recording.sample_rate_hz, *model, std::nullopt);
   input.telemetry = telemetry_input(recording, *model);
+  print_notes(input.telemetry->notes);
+  print_gaps(recording.gaps);
   return input;
+}
+
+/// Telemetry itself is no output of a block: not every engine sends it to its taps.
+class WithoutInputs : public tb::TapSink {
+ public:
+  explicit WithoutInputs(tb::TapSink& sink) : sink_(sink) {}
+  void tap(config::TapIndex index, std::int64_t raw) override {
+    if (index != config::tap_frequency && index != config::tap_rate) sink_.tap(index, raw);
+  }
+
+ private:
+  tb::TapSink& sink_;
+};
+
+/// Only the rtl engine leaves waves.
+EngineOptions for_engine(const std::string& name, EngineOptions options) {
+  if (name != "rtl") options.waves.clear();
+  return options;
 }
 
 struct PairResult {
@@ -68,13 +93,14 @@ struct PairResult {
 /// Both engines in step over the same chunks, until the end or the first difference.
 PairResult compare_pair(const Input& input, const std::string& first, const std::string& second,
                         const EngineOptions& options) {
-  const auto a = make_engine(first, input.setup.wide, options);
-  const auto b = make_engine(second, input.setup.wide, options);
+  const auto a = make_engine(first, input.setup.wide, for_engine(first, options));
+  const auto b = make_engine(second, input.setup.wide, for_engine(second, options));
   tb::Scoreboard scoreboard(input.telemetry ? 0 : sampling(input.setup.wide).decimation);
   a->reset(input.setup.values);
   b->reset(input.setup.values);
-  a->set_taps(&scoreboard.first());
-  b->set_taps(&scoreboard.second());
+  WithoutInputs first_outputs(scoreboard.first()), second_outputs(scoreboard.second());
+  a->set_taps(input.telemetry ? &first_outputs : &scoreboard.first());
+  b->set_taps(input.telemetry ? &second_outputs : &scoreboard.second());
   const std::size_t total = input.telemetry ? input.telemetry->time_s.size() : input.pairs.size();
   constexpr std::size_t chunk = 5000;
   recording::Progress progress(first + " and " + second,
@@ -108,9 +134,15 @@ constexpr std::array word_names = {"frequency",   "temperature", "derivative", "
                                    "phase_error", "bias",        "rate",       "compensated"};
 constexpr std::array word_units = {"Hz", "degC", "full scale", "1", "turns", "deg/h", "deg/h", "deg/h"};
 
+struct WordDifference {
+  double largest = 0.0;
+  double rms = 0.0;
+};
+using Differences = std::array<WordDifference, word_names.size()>;
+
 /// The ideal chain has no bits to compare: largest and rms difference of each word, once the frequency is
 /// valid.
-std::string ideal_differences(const Input& input, const std::string& other) {
+Differences ideal_differences(const Input& input, const std::string& other) {
   std::array<std::vector<tb::Record>, 2> records;
   const std::array names = {std::string("ideal"), other};
   for (int k = 0; k < 2; ++k) {
@@ -119,7 +151,7 @@ std::string ideal_differences(const Input& input, const std::string& other) {
     records[k] = input.telemetry ? run_telemetry(*engine, *input.telemetry, input.setup)
                                  : run_samples(*engine, input.pairs);
   }
-  std::string text = fmt::format("ideal against {}: differences after the start\n", other);
+  Differences differences;
   for (std::size_t w = 0; w < word_names.size(); ++w) {
     double largest = 0, square = 0;
     std::size_t n = 0;
@@ -128,25 +160,54 @@ std::string ideal_differences(const Input& input, const std::string& other) {
       largest = std::max(largest, std::abs(d));
       square += d * d;
     }
-    text += fmt::format("  {:<12} largest {:.3g}, rms {:.3g} {}\n", word_names[w], largest,
-                        std::sqrt(square / static_cast<double>(std::max<std::size_t>(n, 1))), word_units[w]);
+    differences[w] = {largest, std::sqrt(square / static_cast<double>(std::max<std::size_t>(n, 1)))};
   }
+  return differences;
+}
+
+std::string to_text(const Differences& differences, const std::string& other) {
+  std::string text = fmt::format("ideal against {}: differences after the start\n", other);
+  for (std::size_t w = 0; w < word_names.size(); ++w)
+    text += fmt::format("  {:<12} largest {:.3g}, rms {:.3g} {}\n", word_names[w], differences[w].largest,
+                        differences[w].rms, word_units[w]);
   return text;
 }
 
-int compare(CompareOptions options) {
-  if (options.engines.size() < 2) {
+recording::Json to_json(const Differences& differences) {
+  recording::Json json;
+  for (std::size_t w = 0; w < word_names.size(); ++w)
+    json[word_names[w]] = {
+        {"unit", word_units[w]}, {"largest", differences[w].largest}, {"rms", differences[w].rms}};
+  return json;
+}
+
+void check(const CompareOptions& options) {
+  const auto& engines = options.engines;
+  for (auto name = engines.begin(); name != engines.end(); ++name) {
+    check_engine_name(*name);
+    if (std::find(engines.begin(), name, *name) == name) continue;
+    throw recording::InputError({}, fmt::format("engine {} is named twice", *name), "name it once");
+  }
+  if (engines.size() < 2) {
     throw recording::InputError({}, "one engine has nothing to be compared with",
                                 "name two or more: --engines golden,hls");
   }
-  for (const auto& name : options.engines) {
-    const auto& known = engine_names();
-    if (std::find(known.begin(), known.end(), name) == known.end()) make_engine(name, false);
+  if (!options.engine.waves.empty() && std::find(engines.begin(), engines.end(), "rtl") == engines.end()) {
+    throw recording::InputError({}, "--waves shows the rtl engine, which is not among the engines",
+                                "add rtl to --engines");
   }
+  refuse_settled_points(options.recording);
+  refuse_overwriting({options.engine.waves}, {options.recording, options.model});
+}
+
+int compare(CompareOptions options) {
+  check(options);
   const Input input = read_input(options);
   const bool ideal =
       std::find(options.engines.begin(), options.engines.end(), "ideal") != options.engines.end();
   std::erase(options.engines, "ideal");
+  WavesFile waves(options.engine.waves);
+  options.engine.waves = waves.partial();
   int code = exit_good;
   recording::Json json = recording::Json::array();
   for (std::size_t k = 1; k < options.engines.size(); ++k) {
@@ -178,8 +239,13 @@ int compare(CompareOptions options) {
     }
     json.push_back(entry);
   }
-  if (options.json) fmt::print("{}\n", json.dump(2));
-  if (ideal) fmt::print("{}", ideal_differences(input, options.engines.front()));
+  waves.commit();
+  if (ideal) {
+    const auto differences = ideal_differences(input, options.engines.front());
+    json.push_back({{"engines", {"ideal", options.engines.front()}}, {"differences", to_json(differences)}});
+    if (!options.json) fmt::print("{}", to_text(differences, options.engines.front()));
+  }
+  if (options.json) fmt::print("{}\n", recording::json_text(json, 2));
   return code;
 }
 
@@ -196,23 +262,28 @@ void add_compare(CLI::App& app, Job& job) {
       ->delimiter(',')
       ->capture_default_str();
   command->add_option("-m,--model", options->model, "instrument model (hemi-model/1)");
-  command->add_option("-f,--frequency", options->frequency_hz,
-                      "where the nco starts [Hz]; default: the model's at 20 degC");
-  command->add_option("--adc-rate", options->adc_rate_hz,
-                      "ADC rate of a capture that does not say it [samples/s]");
+  command
+      ->add_option("-f,--frequency", options->frequency_hz,
+                   "where the nco starts [Hz]; default: the model's at 20 degC")
+      ->check(positive_number());
+  command
+      ->add_option("--adc-rate", options->adc_rate_hz,
+                   "ADC rate of a capture that does not say it [samples/s]")
+      ->check(positive_number());
   command
       ->add_option("--gaps", options->engine.gap_probability,
                    "chance of a clock without input (rtl, systemc)")
-      ->check(CLI::Range(0.0, 0.99));
+      ->check(number_between(0.0, 0.99));
   command
       ->add_option("--back-pressure", options->engine.back_pressure_probability,
                    "chance of a clock without output (rtl, systemc)")
-      ->check(CLI::Range(0.0, 0.99));
+      ->check(number_between(0.0, 0.99));
   command->add_option("--seed", options->engine.seed, "of gaps and back-pressure")->capture_default_str();
-  command->add_option("--waves", options->engine.waves, "FST file of the clocked engines' signals");
+  command->add_option("--waves", options->engine.waves, "FST file of the rtl engine's signals");
   command->add_flag("--json", options->json, "result as JSON");
   command->footer(
-      "Example: hemi compare capture.raw.csv --engines golden,hls,rtl --gaps 0.2 --back-pressure 0.3\n"
+      "Example: hemi compare capture.raw.csv --frequency 4425 --engines golden,hls,rtl --gaps 0.2 "
+      "--back-pressure 0.3\n"
       "Exit code 1 when a bit differs. The ideal engine has no bits: its differences are printed as "
       "figures.");
   command->callback([options, &job] { job = [options] { return compare(*options); }; });

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "cli/recording/error.hpp"
 #include "tb/golden_engine.hpp"
 #include "tb/hls_engine.hpp"
@@ -25,7 +27,15 @@ const std::vector<std::string>& engine_meanings() {
   return meanings;
 }
 
+void check_engine_name(const std::string& name) {
+  const auto& known = engine_names();
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  throw recording::InputError({}, fmt::format("no engine '{}'", name),
+                              fmt::format("use one of {}", fmt::join(known, ", ")));
+}
+
 std::unique_ptr<tb::Engine> make_engine(const std::string& name, bool wide, const EngineOptions& options) {
+  check_engine_name(name);
   if (name == "ideal") return tb::make_golden_engine(wide, golden::Precision::ideal);
   if (name == "golden") return tb::make_golden_engine(wide, golden::Precision::quantised);
   if (name == "hls") return tb::make_hls_engine(wide);
@@ -35,9 +45,7 @@ std::unique_ptr<tb::Engine> make_engine(const std::string& name, bool wide, cons
   rtl.back_pressure_probability = options.back_pressure_probability;
   rtl.waves = options.waves;
   if (name == "rtl") return tb::make_rtl_engine(wide, rtl);
-  if (name == "systemc") return tb::make_systemc_engine(wide, rtl);
-  throw recording::InputError({}, fmt::format("no engine '{}'", name),
-                              fmt::format("use one of {}", fmt::join(engine_names(), ", ")));
+  return tb::make_systemc_engine(wide, rtl);
 }
 
 }  // namespace hemi::cli

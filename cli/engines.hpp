@@ -25,6 +25,9 @@ const std::vector<std::string>& engine_names();
 const std::vector<std::string>& engine_meanings();
 
 /// InputError for a name that is none of engine_names().
+void check_engine_name(const std::string& name);
+
+/// The engine of that name; checks it.
 std::unique_ptr<tb::Engine> make_engine(const std::string& name, bool wide,
                                         const EngineOptions& options = {});
 

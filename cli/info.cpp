@@ -78,7 +78,7 @@ void add_info(CLI::App& app, Job& job) {
   command->callback([json, &job] {
     job = [json] {
       if (*json)
-        fmt::print("{}\n", as_json().dump(2));
+        fmt::print("{}\n", recording::json_text(as_json(), 2));
       else
         print_text();
       return exit_good;

@@ -2,13 +2,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <system_error>
 
 #include "cli/commands.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/interrupt.hpp"
-#include "tb/registers.hpp"
+#include "golden/calibration/input_error.hpp"
 
 // SystemC's library has a main of its own, which would call this; ours goes before it.
 extern "C" int sc_main(int, char**) {
@@ -33,11 +36,23 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? cli::exit_good : cli::exit_bad_input;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    const auto chosen = app.get_subcommands();
+    if (chosen.empty() && argc > 1 && argv[1][0] != '-') {
+      fmt::print(stderr, "hemi: no command '{}'; hemi --help lists them\n", argv[1]);
+      return cli::exit_bad_input;
+    }
+    fmt::print(stderr, "hemi: {}; see hemi {}--help\n", error.what(),
+               chosen.empty() ? "" : chosen.front()->get_name() + " ");
+    return cli::exit_bad_input;
   }
   recording::install_interrupt_handler();
   try {
-    return job();
+    const int code = job();
+    // What is still buffered would be lost without a word at exit.
+    if (std::fflush(stdout) != 0)
+      throw recording::OutputError("standard output", std::strerror(errno), "free some space");
+    return code;
   } catch (const recording::Interrupted&) {
     fmt::print(stderr, "hemi: interrupted; nothing half-written is left\n");
     return recording::kInterruptedExitCode;
@@ -45,8 +60,10 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "hemi: {}\n", error.what());
   } catch (const recording::OutputError& error) {
     fmt::print(stderr, "hemi: {}\n", error.what());
-  } catch (const tb::FormatError& error) {
-    fmt::print(stderr, "hemi: {}; rescale the model or the data\n", error.what());
+  } catch (const calibration::InputError& error) {
+    fmt::print(stderr, "hemi: {}\n", error.what());
+  } catch (const std::system_error& error) {
+    fmt::print(stderr, "hemi: standard output: {}; free some space\n", error.code().message());
   } catch (const std::exception& error) {
     fmt::print(stderr, "hemi: internal error: {}\n", error.what());
     return cli::exit_internal;

@@ -67,11 +67,10 @@ void check_registers(const Setup& setup, const recording::InstrumentModel* model
         refuse_thermometer(i, setup.values[i], *model);
       if (i == config::reg_scale_correction) refuse_scale(setup.values[i], *model);
     }
-    throw InputError(
-        {model != nullptr ? model->path : std::string()},
-        fmt::format("{:.6g} {} is more than register {} holds, +-{:g}: {}", setup.values[i], r.unit, r.name,
-                    limit(r), r.meaning),
-        "check the sample rate and the frequencies of the model");
+    throw InputError({model != nullptr ? model->path : std::string()},
+                     fmt::format("{:.6g} {} is more than register {} holds, +-{:g}: {}", setup.values[i],
+                                 r.unit, r.name, limit(r), r.meaning),
+                     "check the sample rate and the frequencies of the model");
   }
 }
 

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <limits>
 
 #include "cli/chain_run.hpp"
 #include "cli/commands.hpp"
 #include "cli/engines.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/recording/error.hpp"
+#include "cli/recording/sidecar.hpp"
 #include "cli/recording/write.hpp"
 #include "cli/summary.hpp"
 
@@ -22,21 +25,10 @@ struct RunOptions {
   std::optional<double> frequency_hz;
   std::optional<double> window_s;
   std::optional<double> adc_rate_hz;
-  double from_s = 0.0;
+  double from_s = -std::numeric_limits<double>::infinity();
   double to_s = std::numeric_limits<double>::infinity();
   bool json = false;
 };
-
-void print_notes(const std::vector<std::string>& notes) {
-  for (const auto& note : notes) fmt::print(stderr, "note: {}\n", note);
-}
-
-void print_gaps(const std::vector<recording::Gap>& gaps) {
-  for (const auto& gap : gaps) {
-    fmt::print(stderr, "note: gap of {} samples between {} s and {} s\n", gap.missing_samples, gap.start_s,
-               gap.end_s);
-  }
-}
 
 recording::Recording with_provenance(recording::Recording out, const RunOptions& options,
                                      const std::string& device) {
@@ -48,13 +40,39 @@ recording::Recording with_provenance(recording::Recording out, const RunOptions&
   return out;
 }
 
-void finish(const recording::Recording& out, const RunOptions& options, recording::Json summary,
+/// The JSON file that goes with the output; none beside HDF5.
+std::string sidecar_of_output(const RunOptions& options) {
+  std::filesystem::path path = options.output;
+  if (path.empty() || path.extension() == ".h5" || path.extension() == ".hdf5") return {};
+  return path.replace_extension(".json").string();
+}
+
+/// NAME.json may speak of the input as well: NAME.raw.csv or NAME.wav in, NAME.csv out. Its keys stay.
+void keep_shared_sidecar(recording::Recording& out, const RunOptions& options) {
+  const auto shared = recording::read_sidecar(options.recording);
+  std::error_code code;
+  if (!shared.exists || !std::filesystem::equivalent(sidecar_of_output(options), shared.path, code)) return;
+  for (const auto& [key, value] : shared.content.items()) {
+    if (key == "sample_rate_hz" && value != out.sample_rate_hz) {
+      throw recording::InputError({shared.path, 0, 0, key},
+                                  fmt::format("belongs to {} and differs from the output's {} Hz",
+                                              options.recording, out.sample_rate_hz),
+                                  "give the output another name");
+    }
+    if (!out.sidecar.contains(key)) out.sidecar[key] = value;
+  }
+}
+
+void finish(recording::Recording out, const RunOptions& options, recording::Json summary,
             const std::string& text) {
-  if (!options.output.empty()) recording::write_file(options.output, out);
+  if (!options.output.empty()) {
+    keep_shared_sidecar(out, options);
+    recording::write_file(options.output, out);
+  }
   if (options.json) {
     summary["engine"] = options.engine;
     if (!options.output.empty()) summary["output"] = options.output;
-    fmt::print("{}\n", summary.dump(2));
+    fmt::print("{}\n", recording::json_text(summary, 2));
   } else {
     fmt::print("{}", text);
     if (!options.output.empty()) fmt::print("wrote {}\n", options.output);
@@ -65,10 +83,11 @@ int run_capture(const RunOptions& options, const std::optional<recording::Instru
   recording::RawOptions raw;
   raw.sample_rate_hz = options.adc_rate_hz;
   const auto capture = recording::read_raw_capture(options.recording, raw);
-  print_notes(capture.notes);
-  print_gaps(capture.gaps);
   const Setup setup =
       capture_setup(capture, model ? &*model : nullptr, options.frequency_hz, options.window_s);
+  require_an_output(capture, setup);
+  print_notes(capture.notes);
+  print_gaps(capture.gaps);
   print_notes(setup.notes);
   const auto engine = make_engine(options.engine, setup.wide);
   engine->reset(setup.values);
@@ -83,11 +102,14 @@ int run_capture(const RunOptions& options, const std::optional<recording::Instru
   return exit_good;
 }
 
-/// Standard deviation of the values that are there.
-double deviation(const std::vector<double>& values) {
+/// Standard deviation of the values that are there between the two times.
+double deviation(const recording::Recording& out, const char* channel, const RunOptions& options) {
+  const auto& time_s = out.find("time_s")->values;
+  const auto& values = out.find(channel)->values;
   double n = 0, mean = 0, square = 0;
-  for (const double v : values) {
-    if (std::isnan(v)) continue;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double v = values[i];
+    if (std::isnan(v) || time_s[i] < options.from_s || time_s[i] > options.to_s) continue;
     n += 1;
     const double d = v - mean;
     mean += d / n;
@@ -111,8 +133,8 @@ int run_recording(const RunOptions& options, const std::optional<recording::Inst
   engine->reset(setup.values);
   const auto records = run_telemetry(*engine, input, setup);
   const auto out = with_provenance(telemetry_output(records, input, setup), options, recording.device);
-  const double before = deviation(out.find("rate_dph")->values);
-  const double after = deviation(out.find("compensated_rate_dph")->values);
+  const double before = deviation(out, "rate_dph", options);
+  const double after = deviation(out, "compensated_rate_dph", options);
   recording::Json summary;
   summary["rows"] = records.size();
   summary["rate_deviation_dph"] = before;
@@ -128,6 +150,15 @@ int run_recording(const RunOptions& options, const std::optional<recording::Inst
 }
 
 int run(const RunOptions& options) {
+  check_engine_name(options.engine);
+  check_stretch(options.from_s, options.to_s);
+  refuse_settled_points(options.recording);
+  if (std::filesystem::path(options.output).extension() == ".json") {
+    throw recording::OutputError(options.output, "the ending belongs to the file beside an output",
+                                 "name the output .csv or .h5");
+  }
+  refuse_overwriting({options.output, sidecar_of_output(options)}, {options.recording, options.model});
+  refuse_overwriting({options.output}, {recording::read_sidecar(options.recording).path});
   std::optional<recording::InstrumentModel> model;
   if (!options.model.empty()) model = recording::read_model(options.model);
   if (recording::is_raw(options.recording)) return run_capture(options, model);
@@ -148,11 +179,16 @@ void add_run(CLI::App& app, Job& job) {
       ->capture_default_str();
   command->add_option("-m,--model", options->model, "instrument model (hemi-model/1)");
   command->add_option("-o,--output", options->output, "output: .csv, or .h5 for HDF5");
-  command->add_option("-f,--frequency", options->frequency_hz,
-                      "where the nco starts [Hz]; default: the model's at 20 degC");
-  command->add_option("--window", options->window_s, "window of df/dt [s], about; default 20");
-  command->add_option("--adc-rate", options->adc_rate_hz,
-                      "ADC rate of a capture that does not say it [samples/s]");
+  command
+      ->add_option("-f,--frequency", options->frequency_hz,
+                   "where the nco starts [Hz]; default: the model's at 20 degC")
+      ->check(positive_number());
+  command->add_option("--window", options->window_s, "window of df/dt [s], about; default 20")
+      ->check(positive_number());
+  command
+      ->add_option("--adc-rate", options->adc_rate_hz,
+                   "ADC rate of a capture that does not say it [samples/s]")
+      ->check(positive_number());
   command->add_option("--from", options->from_s, "start of the stretch that the summary speaks of [s]");
   command->add_option("--to", options->to_s, "end of it [s]");
   command->add_flag("--json", options->json, "summary as JSON");

@@ -10,6 +10,7 @@
 #include "cli/recording/error.hpp"
 #include "cli/register_check.hpp"
 #include "golden/calibration/inverse_polynomial.hpp"
+#include "golden/calibration/linear_fit.hpp"
 
 namespace hemi::cli {
 namespace {
@@ -52,35 +53,34 @@ void set_loop(Setup& setup) {
 
 /// slope_shift and slope_gain for blocks of M outputs: derivative = slope / full scale (docs/chain.md).
 void set_derivative(Setup& setup, std::optional<double> window_s) {
-  const double wanted = window_s.value_or(default_window_s);
-  const double shortest_s = config::derivative_blocks * setup.output_period_s;
-  const double longest_s = std::ldexp(shortest_s, config::max_log2_block);
-  const double outputs = wanted / shortest_s;
+  const auto window_of = [&](int log2_block) {
+    return std::ldexp(config::derivative_blocks * setup.output_period_s, log2_block);
+  };
+  const auto gain_of = [&](int log2_block) {
+    const double full_scale = derivative_full_scale_hz_per_s * setup.rate_ratio;
+    return std::ldexp(6.0 / (4080.0 * setup.output_period_s * full_scale),
+                      config::slope_word.fraction - config::slope_sum.fraction - 2 * log2_block);
+  };
+  // A window so short that one step of the slope's sum passes full scale needs a gain above the register's.
+  int shortest = 0;
+  while (shortest < config::max_log2_block && gain_of(shortest) >= 1.0) ++shortest;
+  const double wanted_s = window_s.value_or(default_window_s);
   // "About": the nearest of the windows that there are, by ratio.
   constexpr double half_step = std::numbers::sqrt2;
-  if (window_s && !(wanted * half_step >= shortest_s && wanted <= longest_s * half_step)) {
-    throw InputError({}, fmt::format("no window of df/dt lasts about {} s", wanted),
-                     fmt::format("ask for a --window of {:.4g} s to {:.6g} s at outputs every {:.4g} s",
-                                 shortest_s, longest_s, setup.output_period_s));
+  if (window_s && !(wanted_s * half_step >= window_of(shortest) &&
+                    wanted_s <= window_of(config::max_log2_block) * half_step)) {
+    throw InputError(
+        {}, fmt::format("no window of df/dt lasts about {} s", wanted_s),
+        fmt::format("ask for a --window of {:.4g} s to {:.6g} s at outputs every {:.4g} s",
+                    window_of(shortest), window_of(config::max_log2_block), setup.output_period_s));
   }
-  const int log2_block = static_cast<int>(
-      std::clamp(std::lround(std::log2(std::max(outputs, 1.0))), 0L, long{config::max_log2_block}));
-  const double block = std::ldexp(1.0, log2_block);
-  const double full_scale = derivative_full_scale_hz_per_s * setup.rate_ratio;
-  double gain = 6.0 / (4080.0 * block * block * setup.output_period_s * full_scale);
-  gain *= std::ldexp(1.0, config::slope_word.fraction - config::slope_sum.fraction);
-  const int shift = std::clamp(-std::ilogb(gain) - 1, 0, 50);
-  gain = std::ldexp(gain, shift);
-  if (gain >= 1.0) {
-    throw InputError({},
-                     fmt::format("a window of df/dt of {:.4g} s resolves no slope below {} Hz/s",
-                                 block * shortest_s, derivative_full_scale_hz_per_s),
-                     "ask for a longer --window");
-  }
+  const int log2_block = static_cast<int>(std::clamp(std::lround(std::log2(wanted_s / window_of(0))),
+                                                     long{shortest}, long{config::max_log2_block}));
+  const int shift = std::clamp(-std::ilogb(gain_of(log2_block)) - 1, 0, 50);
   setup.values[config::reg_log2_block] = log2_block;
   setup.values[config::reg_slope_shift] = shift;
-  setup.values[config::reg_slope_gain] = gain;
-  setup.derivative_window_s = block * config::derivative_blocks * setup.output_period_s;
+  setup.values[config::reg_slope_gain] = std::ldexp(gain_of(log2_block), shift);
+  setup.derivative_window_s = window_of(log2_block);
 }
 
 /// The inverse polynomial of the highest order whose coefficients fit their registers: over a narrow range of
@@ -89,8 +89,13 @@ calibration::InversePolynomial fit_inverse_that_fits(const calibration::Frequenc
                                                      double reference_hz, double span_hz) {
   const double limit = std::ldexp(1.0, config::temperature.width - 1 - config::temperature.fraction);
   for (Eigen::Index order = calibration::kMaxInverseOrder;; --order) {
-    const auto inverse = calibration::fit_inverse(frequency, reference_hz, order, span_hz);
-    if (order == 1 || inverse.coefficients_degc.cwiseAbs().maxCoeff() < limit) return inverse;
+    try {
+      const auto inverse = calibration::fit_inverse(frequency, reference_hz, order, span_hz);
+      if (order == 1 || inverse.coefficients_degc.cwiseAbs().maxCoeff() < limit) return inverse;
+    } catch (const calibration::RankDeficiencyError&) {
+      // Too narrow a range, seen from the reference, for powers this high.
+      if (order == 1) throw;
+    }
   }
 }
 
@@ -101,10 +106,10 @@ void check_span(const InstrumentModel& model, const calibration::FrequencyPolyno
                             frequency.frequency_hz(frequency.max_degc())};
   const double lowest_hz = std::min(ends_hz[0], ends_hz[1]), highest_hz = std::max(ends_hz[0], ends_hz[1]);
   if (!std::isfinite(lowest_hz) || !std::isfinite(highest_hz)) {
-    throw InputError({model.path, 0, 0, "frequency.coefficients_hz"},
-                     fmt::format("f(T) is not finite from {:g} to {:g} degC", frequency.min_degc(),
-                                 frequency.max_degc()),
-                     "check the coefficients and calibrated_degc");
+    throw InputError(
+        {model.path, 0, 0, "frequency.coefficients_hz"},
+        fmt::format("f(T) is not finite from {:g} to {:g} degC", frequency.min_degc(), frequency.max_degc()),
+        "check the coefficients and calibrated_degc");
   }
   if (reference_hz + span_hz > lowest_hz && reference_hz - span_hz < highest_hz) return;
   throw InputError({model.path, 0, 0, model.bias ? "bias.reference_hz" : "frequency"},

@@ -7,7 +7,7 @@ set datafile missing "nan"
 set border 3 lw 0.8 lc rgb "#555555"
 set tics nomirror out scale 0.6
 set grid lc rgb "#dddddd" lt 1 lw 0.6
-set key noautotitle top right samplen 2
+set key noautotitle top right samplen 2 noopaque
 before = "#c44e52"
 after = "#2a6fb0"
 pale = "#a9c6e3"
