@@ -50,8 +50,8 @@ class Nco {
     constexpr int f = config::table_fine_bits;
     const std::int32_t index = u >> f;
     const std::int32_t fine = ((u & ((1 << f) - 1)) << 1) | 1;
-    const std::int64_t sum =
-        (std::int64_t{sine_base[index]} << (f + 1)) + std::int32_t{sine_delta[index]} * fine;
+    const std::int32_t step = std::int32_t{sine_delta[index]} * fine;  // below 2^26
+    const std::int64_t sum = (std::int64_t{sine_base[index]} << (f + 1)) + step;
     return static_cast<std::int32_t>((sum + (1 << (f + 1))) >> (f + 2));
   }
 
