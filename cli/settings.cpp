@@ -90,7 +90,7 @@ calibration::InversePolynomial fit_inverse_that_fits(const calibration::Frequenc
   const double limit = std::ldexp(1.0, config::temperature.width - 1 - config::temperature.fraction);
   for (Eigen::Index order = calibration::kMaxInverseOrder;; --order) {
     try {
-      const auto inverse = calibration::fit_inverse(frequency, reference_hz, order, span_hz);
+      auto inverse = calibration::fit_inverse(frequency, reference_hz, order, span_hz);
       if (order == 1 || inverse.coefficients_degc.cwiseAbs().maxCoeff() < limit) return inverse;
     } catch (const calibration::RankDeficiencyError&) {
       // Too narrow a range, seen from the reference, for powers this high.

@@ -37,6 +37,7 @@ Table load_csv(const std::string& path, const Sidecar& sidecar) {
     targets = resolve_columns(names, sidecar, place);
     note_unused(names, sidecar, notes);
     std::vector<bool> wanted;
+    wanted.reserve(targets.size());
     for (const Target& target : targets) wanted.push_back(!target.channel.empty());
     return wanted;
   });

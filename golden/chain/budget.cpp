@@ -101,7 +101,7 @@ ChainBudget quantisation_budget(const OperatingPoint& point, const RegisterValue
   const double length = point.primary_amplitude / 2.0 * kScale * cic_gain * kImageGain;
   const double turn = 2.0 * kPi;
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
-  const Eigen::VectorXd both = Eigen::VectorXd::Ones(2 * config::ticks_per_output);
+  const Eigen::VectorXd both = Eigen::VectorXd::Ones(Eigen::Index{2} * config::ticks_per_output);
   constexpr double kHzPerTurn = static_cast<double>(config::output_rate_hz) / config::ticks_per_output;
   const double ticks = static_cast<double>(both.size());
 
