@@ -29,8 +29,8 @@
 //   1  ap_fixed (Vitis HLS)    2  ac_fixed (Catapult)    3  sc_fixed (SystemC)
 //
 // A type that saturates symmetrically never holds -2^(W-1), and from_raw must not be given it: backends
-// differ there. SystemC's expressions have no width of their own: quantise into a named type right after each.
-// Constant expressions work with backend 0 only; tables are arrays of integers, read with from_raw.
+// differ there. SystemC's expressions have no width of their own: quantise into a named type right after
+// each. Constant expressions work with backend 0 only; tables are arrays of integers, read with from_raw.
 #ifndef HEMI_HLS_FIXED_HPP_
 #define HEMI_HLS_FIXED_HPP_
 

@@ -8,8 +8,8 @@
 
 namespace hemi::tb {
 
-/// The same core of hls/ with SystemC's sc_fixed in place of our own type: proves the swap, and is the yardstick for speed.
-/// Reference instrument; sends no taps.
+/// The same core of hls/ with SystemC's sc_fixed in place of our own type: proves the swap, and is the
+/// yardstick for speed. Reference instrument; sends no taps.
 std::unique_ptr<Engine> make_sc_fixed_engine();
 
 }  // namespace hemi::tb

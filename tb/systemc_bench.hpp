@@ -114,7 +114,8 @@ class HlsModule : public sc_core::sc_module {
     hls::Record record;
     const bool gap = wires_.sample_gap.read();
     if (wires_.sample_telemetry.read()) {
-      core_.telemetry(words_[telemetry_frequency_address], words_[telemetry_rate_address], !gap, record, probe_);
+      core_.telemetry(words_[telemetry_frequency_address], words_[telemetry_rate_address], !gap, record,
+                      probe_);
     } else {
       const auto adc = [](std::uint32_t bits) {
         return static_cast<std::int32_t>(signed_word(bits, Instrument::adc_bits));
