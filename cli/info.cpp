@@ -60,7 +60,7 @@ void print_text() {
     const auto& r = config::registers[i];
     fmt::print("  {:>2} {:<22} {:<8} {:<18} {}\n", i, r.name, q_notation(r.format), r.unit, r.meaning);
   }
-  fmt::print("\nStatus bits (live; sticky 16 higher)\n");
+  fmt::print("\nStatus bits (live; sticky {} higher)\n", config::status_shift);
   for (int i = 0; i < config::status_bits; ++i) fmt::print("  {:>2} {}\n", i, config::status_names[i]);
   fmt::print("\nChannels of recordings\n");
   for (const auto& c : recording::known_channels())

@@ -52,15 +52,21 @@ constexpr Format phase = {53, 48};      ///< nco phase, turns modulo 32
 constexpr Format increment = {49, 48};  ///< turns a sample
 constexpr Format sine = {20, 19};       ///< nco outputs
 constexpr Format product = {product_bits, 23};
-constexpr Format baseband = {28, 27};         ///< I and Q at the loop rate
-constexpr Format cordic = {34, 32};           ///< x and y of the CORDIC; amplitude of one tick
-constexpr Format angle = {32, 32};            ///< phase error, turns modulo 1
-constexpr Format tick_phase = {37, 32};       ///< phase of one tick, turns modulo 32
-constexpr Format total_phase = {46, 32};      ///< unwrapped phase, turns modulo 2^14
-constexpr Format frequency = {46, 29};        ///< nominal Hz (Hz * nominal ADC rate / ADC rate)
-constexpr Format amplitude_sum = {40, 32};    ///< sum over 50 ticks
-constexpr Format phase_error_sum = {38, 32};  ///< sum over 50 ticks, turns
-constexpr Format rate_tick = {37, 26};        ///< deg/h / 625, one tick
+constexpr Format baseband = {28, 27};           ///< I and Q at the loop rate
+constexpr Format cordic = {34, 32};             ///< x and y of the CORDIC; amplitude of one tick
+constexpr Format angle = {32, 32};              ///< phase error, turns modulo 1
+constexpr Format tick_phase = {37, 32};         ///< phase of one tick, turns modulo 32
+constexpr Format total_phase = {46, 32};        ///< unwrapped phase, turns modulo 2^14
+constexpr Format frequency = {46, 29};          ///< nominal Hz (Hz * nominal ADC rate / ADC rate)
+constexpr Format amplitude_sum = {40, 32};      ///< sum over 50 ticks
+constexpr Format phase_error_sum = {38, 32};    ///< sum over 50 ticks, turns
+constexpr Format command = {32, 30};            ///< actuator command, fraction of its full scale
+constexpr Format command_integral = {44, 40};   ///< integral and proportional part of an actuator loop
+constexpr Format command_sum = {38, 30};        ///< command summed over 50 ticks
+constexpr Format dac = {16, 15};                ///< DAC word, fraction of full scale
+constexpr Format dac_sum = {34, 30};            ///< command times carrier plus the error carried over
+constexpr Format increment_operand = {32, 31};  ///< increment, operand of the modulation delay
+constexpr Format rate_tick = {37, 26};          ///< deg/h / 625, one tick
 constexpr Format rate_accumulator = {47, 26};
 constexpr Format rate = {36, 16};         ///< deg/h
 constexpr Format offset = {24, 23};       ///< (frequency - reference) / 64 Hz
@@ -93,6 +99,15 @@ constexpr int lock_window_log2 = 28;  ///< |phase error| < 2^28 / 2^32 = 1/16 tu
 constexpr int steering_window_log2 =
     24;  ///< a change of the error of 2^24 / 2^32 turn a tick (20 Hz) and more steers the frequency
 constexpr int lock_penalty = 4;  ///< steps back for a tick outside the window
+
+// start_up: states of the actuator loops
+enum LoopState {
+  state_open,     ///< control = 0: measuring only, no actuator moves
+  state_search,   ///< no signal: drive at its limit, the nco steps through the search span
+  state_acquire,  ///< signal, not locked: drive off
+  state_rise,     ///< locked: drive pumps the amplitude, rebalance holds the pattern
+  state_run       ///< all loops closed
+};
 
 // ---- Registers
 // ---------------------------------------------------------------------------------------------------
@@ -136,6 +151,27 @@ enum RegisterIndex {
   reg_scale_correction,
   reg_calibrated_low,
   reg_calibrated_high,
+  reg_control,
+  reg_search_amplitude,
+  reg_closing_amplitude,
+  reg_search_ticks,
+  reg_search_step,
+  reg_search_span,
+  reg_holdover_ticks,
+  reg_modulation_phase,
+  reg_modulation_delay,
+  reg_amplitude_setpoint,
+  reg_amplitude_proportional,
+  reg_amplitude_integral,
+  reg_drive_start,
+  reg_drive_limit,
+  reg_quadrature_proportional,
+  reg_quadrature_integral,
+  reg_quadrature_start,
+  reg_quadrature_limit,
+  reg_rebalance_proportional,
+  reg_rebalance_integral,
+  reg_rebalance_limit,
   reg_parity,
   register_count
 };
@@ -173,10 +209,31 @@ constexpr Register registers[register_count] = {
     {"scale_correction", {20, 23}, "1", "1 / scale factor - 1"},
     {"calibrated_low", offset, "1", "lowest calibrated offset"},
     {"calibrated_high", offset, "1", "highest calibrated offset"},
+    {"control", {4, 0}, "1", "0: open loop, actuators at rest; 1: force to rebalance"},
+    {"search_amplitude", cordic, "1", "amplitude that ends the search"},
+    {"closing_amplitude", cordic, "1", "amplitude from which all loops work as in operation"},
+    {"search_ticks", {24, 0}, "ticks", "ticks of search before the nco steps on"},
+    {"search_step", increment, "turns/sample", "step of the nco in the search"},
+    {"search_span", increment, "turns/sample", "largest offset from nco_start in the search"},
+    {"holdover_ticks", {24, 0}, "ticks", "ticks of hold-over before the search starts again"},
+    {"modulation_phase", angle, "turns", "phase of the drive's carrier"},
+    {"modulation_delay", {24, 18}, "samples", "delay that the carrier is ahead by"},
+    {"amplitude_setpoint", cordic, "1", "amplitude to hold"},
+    {"amplitude_proportional", {24, 16}, "1", "proportional gain, drive command per amplitude"},
+    {"amplitude_integral", {24, 28}, "1", "integral gain a tick"},
+    {"drive_start", command, "1", "drive command at the start of the amplitude loop"},
+    {"drive_limit", command, "1", "largest drive command"},
+    {"quadrature_proportional", {24, 13}, "1", "proportional gain, command per secondary quadrature"},
+    {"quadrature_integral", {24, 24}, "1", "integral gain a tick"},
+    {"quadrature_start", command, "1", "quadrature command at the start of its loop"},
+    {"quadrature_limit", command, "1", "largest quadrature command"},
+    {"rebalance_proportional", {24, 13}, "1", "proportional gain, command per secondary in phase"},
+    {"rebalance_integral", {24, 20}, "1", "integral gain a tick"},
+    {"rebalance_limit", command, "1", "largest rebalance command"},
     {"parity", {54, 0}, "1", "exclusive or of all other registers, sign-extended to 54 bits"},
 };
 
-// ---- Record: nine words at the output rate, in this order
+// ---- Record: eleven words at the output rate, in this order
 // ------------------------------------------------------
 enum RecordWord {
   word_frequency,
@@ -184,6 +241,8 @@ enum RecordWord {
   word_derivative,
   word_amplitude,
   word_phase_error,
+  word_drive,
+  word_quadrature,
   word_bias,
   word_rate,
   word_compensated,
@@ -191,8 +250,10 @@ enum RecordWord {
   record_words
 };
 
-// ---- Status bits: live in bits 0..15, sticky in 16..31
+// ---- Status bits: live from bit 0, sticky from bit status_shift
 // --------------------------------------------------------
+constexpr int status_shift = 24;
+constexpr Format status = {2 * status_shift + 1, 0};
 enum StatusBit {
   status_unlocked,
   status_holdover,
@@ -209,6 +270,11 @@ enum StatusBit {
   status_out_of_calibrated_range,
   status_sample_gap,
   status_parity_error,
+  status_drive_saturated,
+  status_quadrature_saturated,
+  status_rebalance_saturated,
+  status_searching,
+  status_starting,
   status_frequency_invalid,
   status_bits
 };
@@ -227,6 +293,11 @@ constexpr const char* status_names[status_bits] = {"unlocked",
                                                    "out_of_calibrated_range",
                                                    "sample_gap",
                                                    "parity_error",
+                                                   "drive_saturated",
+                                                   "quadrature_saturated",
+                                                   "rebalance_saturated",
+                                                   "searching",
+                                                   "starting",
                                                    "frequency_invalid"};
 
 // ---- Taps: the outputs of each block, in the order of the data
@@ -247,6 +318,9 @@ enum TapIndex {
   tap_product_xq,
   tap_product_yi,
   tap_product_yq,
+  tap_carrier,
+  tap_dac_drive,
+  tap_dac_rebalance,
   tap_cic_xi,
   tap_cic_xq,
   tap_cic_yi,
@@ -259,9 +333,18 @@ enum TapIndex {
   tap_phase_error,
   tap_secondary_in_phase,
   tap_secondary_quadrature,
+  tap_state,
   tap_loop_integral,
   tap_loop_increment,
   tap_lock_counter,
+  tap_drive_integral,
+  tap_drive,
+  tap_quadrature_integral,
+  tap_quadrature,
+  tap_rebalance_integral,
+  tap_rebalance,
+  tap_carrier_offset,
+  tap_dac_quadrature,
   tap_tick_phase,
   tap_rate_tick,
   tap_frequency,
@@ -283,6 +366,9 @@ constexpr Tap taps[tap_count] = {
     {"demodulator", "product_xq", TapRate::sample, product, "1"},
     {"demodulator", "product_yi", TapRate::sample, product, "1"},
     {"demodulator", "product_yq", TapRate::sample, product, "1"},
+    {"modulator", "carrier", TapRate::sample, sine, "1"},
+    {"modulator", "dac_drive", TapRate::sample, dac, "full scale"},
+    {"modulator", "dac_rebalance", TapRate::sample, dac, "full scale"},
     {"cic", "cic_xi", TapRate::tick, baseband, "1"},
     {"cic", "cic_xq", TapRate::tick, baseband, "1"},
     {"cic", "cic_yi", TapRate::tick, baseband, "1"},
@@ -295,9 +381,18 @@ constexpr Tap taps[tap_count] = {
     {"phase_detector", "phase_error", TapRate::tick, angle, "turns"},
     {"phase_detector", "secondary_in_phase", TapRate::tick, baseband, "1"},
     {"phase_detector", "secondary_quadrature", TapRate::tick, baseband, "1"},
+    {"start_up", "state", TapRate::tick, {4, 0}, "state"},
     {"reference_phase_loop", "integral", TapRate::tick, increment, "turns/sample"},
     {"reference_phase_loop", "increment", TapRate::tick, increment, "turns/sample"},
     {"reference_phase_loop", "lock_counter", TapRate::tick, {16, 0}, "ticks"},
+    {"amplitude_loop", "drive_integral", TapRate::tick, command_integral, "full scale"},
+    {"amplitude_loop", "drive", TapRate::tick, command, "full scale"},
+    {"quadrature_loop", "quadrature_integral", TapRate::tick, command_integral, "full scale"},
+    {"quadrature_loop", "quadrature", TapRate::tick, command, "full scale"},
+    {"rebalance_loop", "rebalance_integral", TapRate::tick, command_integral, "full scale"},
+    {"rebalance_loop", "rebalance", TapRate::tick, command, "full scale"},
+    {"modulator", "carrier_offset", TapRate::tick, angle, "turns"},
+    {"modulator", "dac_quadrature", TapRate::tick, dac, "full scale"},
     {"frequency_tracker", "tick_phase", TapRate::tick, tick_phase, "turns"},
     {"rate_filter", "rate_tick", TapRate::tick, rate_tick, "deg/h/625"},
     {"frequency_tracker", "frequency", TapRate::output, frequency, "Hz"},
@@ -308,7 +403,7 @@ constexpr Tap taps[tap_count] = {
     {"derivative", "derivative", TapRate::output, derivative, "full scale"},
     {"bias_model", "bias", TapRate::output, bias, "deg/h"},
     {"bias_model", "compensated", TapRate::output, rate, "deg/h"},
-    {"status", "status", TapRate::output, {33, 0}, "bits"},
+    {"status", "status", TapRate::output, status, "bits"},
 };
 
 }  // namespace config

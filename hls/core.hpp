@@ -3,6 +3,7 @@
 // core: the whole chain, one call a sample pair.
 //
 //   nco -> demodulator -> cic -> image_filter -> phase_detector -> reference_phase_loop (back to the nco)
+//       -> start_up, amplitude_loop, quadrature_loop, rebalance_loop -> modulator (back to the DACs)
 //       -> frequency_tracker, rate_filter -> thermometer -> derivative -> bias_model -> status -> record
 //
 // Template parameters: the instrument (config::Reference, config::Wide). `probe(tap, value)` hears the output
@@ -10,18 +11,15 @@
 #ifndef HEMI_HLS_CORE_HPP
 #define HEMI_HLS_CORE_HPP
 
+#include "hls/actuators.hpp"
 #include "hls/bias_model.hpp"
 #include "hls/cic.hpp"
 #include "hls/demodulator.hpp"
 #include "hls/derivative.hpp"
 #include "hls/frequency_tracker.hpp"
 #include "hls/image_filter.hpp"
-#include "hls/nco.hpp"
-#include "hls/phase_detector.hpp"
 #include "hls/rate_filter.hpp"
 #include "hls/reference_phase_loop.hpp"
-#include "hls/registers.hpp"
-#include "hls/status.hpp"
 #include "hls/thermometer.hpp"
 
 namespace hemi {
@@ -47,6 +45,7 @@ class Core {
     }
     loop_.reset(registers_.nco_start);
     increment_ = registers_.nco_start;
+    actuators_.reset();
     tracker_.reset();
     rate_filter_.reset();
     derivative_.reset();
@@ -72,8 +71,15 @@ class Core {
   void telemetry(std::int64_t frequency, std::int64_t rate, bool valid, Record& record, Probe& probe) {
     record.word[config::word_amplitude] = 0;
     record.word[config::word_phase_error] = 0;
+    record.word[config::word_drive] = 0;
+    record.word[config::word_quadrature] = 0;
     finish(from_raw<Frequency>(frequency), from_raw<Rate>(rate), valid, valid, record, probe);
   }
+
+  /// DAC words of the last sample, raw (config::dac).
+  std::int32_t dac_drive() const { return static_cast<std::int32_t>(raw(actuators_.drive_word())); }
+  std::int32_t dac_rebalance() const { return static_cast<std::int32_t>(raw(actuators_.rebalance_word())); }
+  std::int32_t dac_quadrature() const { return static_cast<std::int32_t>(raw(actuators_.quadrature_word())); }
 
  private:
   template <class Probe>
@@ -88,6 +94,7 @@ class Core {
       probe(static_cast<config::TapIndex>(config::tap_product_xi + i), products[i]);
       cic_[i].integrate(products[i]);
     }
+    actuators_.sample(nco_.phase(), probe);
     nco_.advance(increment_);
     constexpr std::int32_t rail = std::int32_t{1} << (Instrument::adc_bits - 1);
     status_.raise(config::status_adc_overload, x == rail - 1 || x == -rail || y == rail - 1 || y == -rail);
@@ -97,6 +104,7 @@ class Core {
   template <class Probe>
   void tick(Probe& probe) {
     increment_ = loop_.increment();
+    actuators_.take_over();
     Baseband decimated[channels];
     Baseband baseband[channels];
     for (int i = 0; i < channels; ++i) {
@@ -115,12 +123,18 @@ class Core {
     probe(config::tap_phase_error, polar.phase_error);
     probe(config::tap_secondary_in_phase, secondary.in_phase);
     probe(config::tap_secondary_quadrature, secondary.quadrature);
+    if (actuators_.start_up(polar, loop_.locked(), registers_, probe))
+      loop_.restart(actuators_.start(registers_));
     loop_.step(polar, registers_, loop_saturated);
     probe(config::tap_loop_integral, loop_.integral());
     probe(config::tap_loop_increment, loop_.increment());
     probe(config::tap_lock_counter, from_raw<Fixed<16, 16>>(loop_.counter()));
+    actuators_.loops(polar, secondary, loop_.increment(), registers_, status_, probe);
     probe(config::tap_tick_phase, tracker_.step(nco_.phase(), polar));
-    probe(config::tap_rate_tick, rate_filter_.step(secondary.in_phase, registers_.rate_gain, rate_saturated));
+    probe(config::tap_rate_tick,
+          registers_.control == 0
+              ? rate_filter_.step(secondary.in_phase, registers_.rate_gain, rate_saturated)
+              : rate_filter_.step(actuators_.rebalance(), registers_.rate_gain, rate_saturated));
     status_.raise(config::status_secondary_saturated, secondary_saturated);
     status_.raise(config::status_loop_saturated, loop_saturated);
     status_.raise(config::status_rate_saturated, rate_saturated);
@@ -138,6 +152,8 @@ class Core {
     status_.raise(config::status_rate_saturated, rate_saturated);
     record.word[config::word_amplitude] = raw(tracker_.amplitude());
     record.word[config::word_phase_error] = raw(tracker_.phase_error());
+    record.word[config::word_drive] = raw(actuators_.drive_sum());
+    record.word[config::word_quadrature] = raw(actuators_.quadrature_sum());
     // The first output has no predecessor and the second holds the filters' start.
     const bool valid = output_count_ >= 2;
     if (!valid) ++output_count_;
@@ -173,7 +189,7 @@ class Core {
     probe(config::tap_derivative, derivative);
     probe(config::tap_bias, bias);
     probe(config::tap_compensated, compensated);
-    probe(config::tap_status, from_raw<Fixed<33, 33>>(status));
+    probe(config::tap_status, from_raw<Word<config::status>>(status));
     record.word[config::word_frequency] = raw(frequency);
     record.word[config::word_temperature] = raw(temperature);
     record.word[config::word_derivative] = raw(derivative);
@@ -188,6 +204,7 @@ class Core {
   Cic<Instrument> cic_[channels];
   ImageFilter image_filter_[channels];
   ReferencePhaseLoop loop_;
+  Actuators actuators_;
   FrequencyTracker tracker_;
   RateFilter rate_filter_;
   DerivativeFilter derivative_;

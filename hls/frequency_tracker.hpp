@@ -59,15 +59,6 @@ class FrequencyTracker {
  private:
   static constexpr int delay = 4;
 
-  /// Sum of this interval and the one before; moves on to the next.
-  template <class T>
-  static T over_two(T& current, T& last) {
-    const T both = wrap_add(current, last);
-    last = current;
-    current = T();
-    return both;
-  }
-
   Phase last_nco_;
   TickPhase centre_[delay];
   TickPhase tick_phase_;

@@ -28,11 +28,14 @@ class Nco {
   Phase phase() const { return phase_; }
   void advance(const Increment& increment) { phase_ = wrap_add(phase_, increment); }
 
-  SinCos output() const {
+  SinCos output() const { return look_up(phase_); }
+
+  /// Of any phase; the modulator's carrier comes from the same table.
+  static SinCos look_up(const Phase& phase) {
     constexpr int bits = config::table_index_bits + config::table_fine_bits;
     constexpr std::int32_t mask = (std::int32_t{1} << bits) - 1;
     const std::int32_t angle =
-        static_cast<std::int32_t>((raw(phase_) >> (config::phase.fraction - bits - 2)) & ((mask << 2) | 3));
+        static_cast<std::int32_t>((raw(phase) >> (config::phase.fraction - bits - 2)) & ((mask << 2) | 3));
     const std::int32_t quadrant = angle >> bits;
     const std::int32_t u = angle & mask;
     // Odd quadrants run down the quarter wave: mirrored by the complement.

@@ -2,10 +2,10 @@
 //
 // rate_filter: the rate of each tick to the output rate, with the same triangular weights as the frequency.
 //
-//   rate = sum over 49 ticks of w_j gain in_phase_j, w = 1..25..1;  H(f) = (sin(25 pi f/fl) / (25 sin(pi
+//   rate = sum over 49 ticks of w_j gain source_j, w = 1..25..1;  H(f) = (sin(25 pi f/fl) / (25 sin(pi
 //   f/fl)))^2
 //
-// in       secondary in phase Q1.27; gain Q11.13 in deg/h / 625
+// in       secondary in phase Q1.27 (open loop) or rebalance command Q2.30; gain Q11.13 in deg/h / 625
 // out      rate Q20.16 deg/h; -3 dB at 64 Hz, zeros at multiples of 200 Hz
 // delay    24 ticks
 // rounding tick half up to 2^-26 and clipped (flag); accumulators wrap, the combs undo it; output half up and
@@ -25,8 +25,10 @@ class RateFilter {
     comb_first_ = comb_second_ = RateAccumulator();
   }
 
-  RateTick step(const Baseband& in_phase, const RegisterWord<config::reg_rate_gain>& gain, bool& saturated) {
-    const RateTick tick = clip<RateTick, Clipped<config::rate_tick>>(in_phase * gain, saturated);
+  /// source: what measures the rate, the secondary in phase (open loop) or the rebalance command.
+  template <class Source>
+  RateTick step(const Source& source, const RegisterWord<config::reg_rate_gain>& gain, bool& saturated) {
+    const RateTick tick = clip<RateTick, Clipped<config::rate_tick>>(source * gain, saturated);
     first_ = wrap_add(first_, tick);
     second_ = wrap_add(second_, first_);
     return tick;

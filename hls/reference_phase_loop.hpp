@@ -26,12 +26,17 @@ namespace hls {
 class ReferencePhaseLoop {
  public:
   void reset(const Increment& start) {
+    restart(start);
+    last_ = Angle();
+    holdover_ = false;
+  }
+
+  /// Forgets the lock and starts again from an increment.
+  void restart(const Increment& start) {
     integral_ = start;
     increment_ = start;
-    last_ = Angle();
     counter_ = 0;
     locked_ = false;
-    holdover_ = false;
   }
 
   void step(const Polar& polar, const Registers& r, bool& saturated) {

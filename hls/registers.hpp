@@ -26,6 +26,23 @@ struct Registers {
   Bias bias[10];  ///< in the order of config::RegisterIndex: 1, f, f2, f3, df, df2, df3, f df, f2 df, f df2
   RegisterWord<config::reg_scale_correction> scale_correction;
   Offset calibrated_low, calibrated_high;
+  std::int32_t control = 0;
+  CordicWord search_amplitude, closing_amplitude;
+  std::int32_t search_ticks = 0;
+  Increment search_step, search_span;
+  std::int32_t holdover_ticks = 0;
+  Angle modulation_phase;
+  RegisterWord<config::reg_modulation_delay> modulation_delay;
+  CordicWord amplitude_setpoint;
+  RegisterWord<config::reg_amplitude_proportional> amplitude_proportional;
+  RegisterWord<config::reg_amplitude_integral> amplitude_integral;
+  Command drive_start, drive_limit;
+  RegisterWord<config::reg_quadrature_proportional> quadrature_proportional;
+  RegisterWord<config::reg_quadrature_integral> quadrature_integral;
+  Command quadrature_start, quadrature_limit;
+  RegisterWord<config::reg_rebalance_proportional> rebalance_proportional;
+  RegisterWord<config::reg_rebalance_integral> rebalance_integral;
+  Command rebalance_limit;
   bool parity_error = false;
 
   /// Takes over all words at once; words wider than their format lose their upper bits.
@@ -48,10 +65,40 @@ struct Registers {
     take(scale_correction, image[config::reg_scale_correction]);
     take(calibrated_low, image[config::reg_calibrated_low]);
     take(calibrated_high, image[config::reg_calibrated_high]);
+    load_loops(image);
     parity_error = fold(image) != 0;
   }
 
  private:
+  void load_loops(const std::int64_t (&image)[config::register_count]) {
+    control = static_cast<std::int32_t>(image[config::reg_control] & 1);
+    take(search_amplitude, image[config::reg_search_amplitude]);
+    take(closing_amplitude, image[config::reg_closing_amplitude]);
+    search_ticks = count<config::reg_search_ticks>(image);
+    take(search_step, image[config::reg_search_step]);
+    take(search_span, image[config::reg_search_span]);
+    holdover_ticks = count<config::reg_holdover_ticks>(image);
+    take(modulation_phase, image[config::reg_modulation_phase]);
+    take(modulation_delay, image[config::reg_modulation_delay]);
+    take(amplitude_setpoint, image[config::reg_amplitude_setpoint]);
+    take(amplitude_proportional, image[config::reg_amplitude_proportional]);
+    take(amplitude_integral, image[config::reg_amplitude_integral]);
+    take(drive_start, image[config::reg_drive_start]);
+    take(drive_limit, image[config::reg_drive_limit]);
+    take(quadrature_proportional, image[config::reg_quadrature_proportional]);
+    take(quadrature_integral, image[config::reg_quadrature_integral]);
+    take(quadrature_start, image[config::reg_quadrature_start]);
+    take(quadrature_limit, image[config::reg_quadrature_limit]);
+    take(rebalance_proportional, image[config::reg_rebalance_proportional]);
+    take(rebalance_integral, image[config::reg_rebalance_integral]);
+    take(rebalance_limit, image[config::reg_rebalance_limit]);
+  }
+
+  template <int Index>
+  static std::int32_t count(const std::int64_t (&image)[config::register_count]) {
+    return static_cast<std::int32_t>(raw(from_raw<RegisterWord<Index>>(image[Index])));
+  }
+
   template <class T>
   static void take(T& word, std::int64_t value) {
     word = from_raw<T>(value);

@@ -2,7 +2,8 @@
 //
 // status: live flags of one output interval and sticky ones since the first lock.
 //
-//   sticky |= live once an output was locked and its frequency valid;  word = sticky 2^16 + live
+//   sticky |= live once an output was locked, all loops closed and its frequency valid;  word = sticky 2^24 +
+//   live
 //
 // in       flags as they are raised (config::StatusBit); out: one word an output
 #ifndef HEMI_HLS_STATUS_HPP
@@ -25,11 +26,12 @@ class Status {
 
   /// Closes the output interval: the word; live flags start anew.
   std::int64_t close() {
-    constexpr std::int64_t starting =
-        (std::int64_t{1} << config::status_unlocked) | (std::int64_t{1} << config::status_frequency_invalid);
+    constexpr std::int64_t starting = (std::int64_t{1} << config::status_unlocked) |
+                                      (std::int64_t{1} << config::status_starting) |
+                                      (std::int64_t{1} << config::status_frequency_invalid);
     if ((live_ & starting) == 0) armed_ = true;
     if (armed_) sticky_ |= live_;
-    const std::int64_t word = (sticky_ << 16) | live_;
+    const std::int64_t word = (sticky_ << config::status_shift) | live_;
     live_ = 0;
     return word;
   }

@@ -3,7 +3,7 @@
 //
 //   reset          load `registers` and start from sample 0; the other inputs of that call are not used
 //   telemetry      false: x, y (raw ADC words) and gap;  true: frequency, rate (raw words), gap means not
-//   valid record_valid   `record` holds the nine words of config::RecordWord
+//   valid record_valid   `record` holds the words of config::RecordWord
 #include "hls/core.hpp"
 
 namespace {

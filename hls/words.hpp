@@ -39,6 +39,11 @@ using TotalPhase = Word<config::total_phase>;
 using Frequency = Word<config::frequency>;
 using AmplitudeSum = Word<config::amplitude_sum>;
 using PhaseErrorSum = Word<config::phase_error_sum>;
+using Command = Word<config::command>;
+using CommandIntegral = Word<config::command_integral>;
+using CommandSum = Word<config::command_sum>;
+using DacWord = Word<config::dac>;
+using DacSum = Word<config::dac_sum>;
 using RateTick = Word<config::rate_tick>;
 using RateAccumulator = Word<config::rate_accumulator>;
 using Rate = Word<config::rate>;
@@ -52,6 +57,15 @@ template <class Target, class Clip, class Expression>
 Target clip(const Expression& x, bool& flag) {
   flag = flag || saturates<Clip>(x);
   return quantise<Target>(quantise<Clip>(x));
+}
+
+/// Sum over this output interval and the one before; moves on to the next.
+template <class T>
+T over_two(T& current, T& last) {
+  const T both = wrap_add(current, last);
+  last = current;
+  current = T();
+  return both;
 }
 
 /// Listens to no tap; costs nothing.

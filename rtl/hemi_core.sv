@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
-/// The signal core: ADC samples or telemetry in, records out, registers on a write port, one clock. One sequenced
-/// datapath does all blocks; hemi_pkg and hemi_program make it one of the two instruments.
+/// The signal core: ADC samples or telemetry in, DAC words and records out, registers on a write port, one clock. One
+/// sequenced datapath does all blocks; hemi_pkg and hemi_program make it one of the two instruments.
 ///
-/// Clocks: 36 a sample, some 260 a tick and 250 an output (program.lst, summary.txt); 118 are enough for each sample.
-/// Area on the iCE40 UP5K (Yosys 0.23, nextpnr 0.4, reference instrument, taps unconnected): 1640 logic cells, 24 block
-/// RAMs, 5 multipliers; 31 MHz.
+/// Clocks: 48 a sample, some 520 a tick and 300 an output (program.lst, summary.txt); 118 are enough for each sample.
+/// Area on the iCE40 UP5K (Yosys 0.23, nextpnr 0.4, reference instrument): 1790 logic cells, 27 block RAMs (25 without
+/// taps), 5 multipliers; 29 MHz.
 module hemi_core (
     input  logic                   clk_i,                 // clock
     input  logic                   rst_ni,                // synchronous reset, active low
@@ -15,6 +15,10 @@ module hemi_core (
     input  logic [    hemi_pkg::AdcBits-1:0] sample_y_i,            // secondary pickoff, signed
     input  logic                   sample_gap_i,          // samples were lost before this; telemetry: invalid
     input  logic                   sample_telemetry_i,    // frequency and rate come from the registers instead
+    output logic                   dac_valid_o,           // strobe: the words of one sample, held until the next
+    output logic [    hemi_pkg::DacBits-1:0] dac_drive_o,           // signed
+    output logic [    hemi_pkg::DacBits-1:0] dac_rebalance_o,
+    output logic [    hemi_pkg::DacBits-1:0] dac_quadrature_o,
     output logic                   record_valid_o,        // record stream
     input  logic                   record_ready_i,
     output logic [   hemi_pkg::WordBits-1:0] record_word_o,         // signed, in the word's format
@@ -43,15 +47,13 @@ module hemi_core (
   logic clearing_q, write, register_taken, register_exists;
   logic [hemi_pkg::AddressBits-1:0] clear_address_q;
 
-  // After reset all words but the constants are cleared; registers may be written from then on.
-  localparam logic [hemi_pkg::AddressBits-1:0] LastCleared = hemi_pkg::AddressBits'(hemi_pkg::FirstConstant - 1);
-
+  // After reset all words are cleared; registers may be written from then on.
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
       clearing_q      <= 1'b1;
       clear_address_q <= '0;
     end else if (clearing_q) begin
-      clearing_q      <= clear_address_q != LastCleared;
+      clearing_q      <= clear_address_q != '1;
       clear_address_q <= clear_address_q + 1'b1;
     end
   end
@@ -111,7 +113,7 @@ module hemi_core (
   hemi_state_memory i_state_memory (
       .clk_i,
       .a_address_i(instruction[hemi_pkg::ALsb+:hemi_pkg::ABits]),
-      .b_address_i(instruction[hemi_pkg::BLsb+:hemi_pkg::BBits]),
+      .b_address_i(instruction[hemi_pkg::BLsb+:hemi_pkg::AddressBits]),
       .a_o        (a),
       .b_o        (b),
       .write_i    (write),
@@ -155,6 +157,18 @@ module hemi_core (
       .event_i   (raised_event),
       .clear_i   (clear_live),
       .live_o    (live)
+  );
+
+  hemi_dac_port i_dac_port (
+      .clk_i,
+      .rst_ni,
+      .write_i     (written),
+      .address_i   (result_address),
+      .word_i      (result[hemi_pkg::DacBits-1:0]),
+      .valid_o     (dac_valid_o),
+      .drive_o     (dac_drive_o),
+      .rebalance_o (dac_rebalance_o),
+      .quadrature_o(dac_quadrature_o)
   );
 
   hemi_record_port i_record_port (

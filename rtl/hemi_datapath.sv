@@ -36,21 +36,26 @@ module hemi_datapath (
   logic [hemi_pkg::ConditionBits-1:0] condition_q;
   logic [    hemi_pkg::EventBits-1:0] event_2_q;
   logic                     from_product_q, from_port_q, mirror_q;
-  logic [             19:0] x, y, gap, live, looked_up, port_d, port_q;
+  logic [             31:0] x, y, gap, live, looked_up, fixed, port_d, port_q;
   logic [             18:0] magnitude;
   logic                     mirror;
-  logic [  hemi_pkg::AddressBits-1:0] b_address;
+  logic [        hemi_pkg::BBits-1:0] b_address;
   logic [  hemi_pkg::ControlBits-1:0] control;
 
   assign b_address    = instruction_i[hemi_pkg::BLsb+:hemi_pkg::BBits];
   assign control      = instruction_i[hemi_pkg::ControlLsb+:hemi_pkg::ControlBits];
   assign clear_live_o = issue_i & (b_address == hemi_pkg::LivePort);
 
-  assign x         = {{(20 - hemi_pkg::AdcBits) {sample_x_i[hemi_pkg::AdcBits-1]}}, sample_x_i};
-  assign y         = {{(20 - hemi_pkg::AdcBits) {sample_y_i[hemi_pkg::AdcBits-1]}}, sample_y_i};
-  assign gap       = {20{gap_i}};
-  assign live      = {{(20 - hemi_pkg::StatusBits) {1'b0}}, live_i};
-  assign looked_up = {1'b0, magnitude};
+  assign x         = {{(32 - hemi_pkg::AdcBits) {sample_x_i[hemi_pkg::AdcBits-1]}}, sample_x_i};
+  assign y         = {{(32 - hemi_pkg::AdcBits) {sample_y_i[hemi_pkg::AdcBits-1]}}, sample_y_i};
+  assign gap       = {32{gap_i}};
+  assign live      = {{(32 - hemi_pkg::StatusBits) {1'b0}}, live_i};
+  assign looked_up = {13'b0, magnitude};
+
+  hemi_constants i_constants (
+      .address_i (b_address[7:0]),
+      .constant_o(fixed)
+  );
 
   always_comb begin
     unique case (b_address)
@@ -58,7 +63,8 @@ module hemi_datapath (
       hemi_pkg::SampleYPort: port_d = y;
       hemi_pkg::GapPort:     port_d = gap;
       hemi_pkg::LivePort:    port_d = live;
-      default:               port_d = looked_up;
+      hemi_pkg::LookupPort:  port_d = looked_up;
+      default:               port_d = fixed;
     endcase
   end
 
@@ -76,8 +82,7 @@ module hemi_datapath (
     sets_2_q       <= instruction_i[hemi_pkg::SetsNegativeLsb];
     event_2_q      <= instruction_i[hemi_pkg::EventLsb+:hemi_pkg::EventBits];
     from_product_q <= b_address == hemi_pkg::ProductPort;
-    from_port_q    <= (b_address[hemi_pkg::AddressBits-1:3] == hemi_pkg::ProductPort[hemi_pkg::AddressBits-1:3])
-                      & (b_address != hemi_pkg::ProductPort);
+    from_port_q    <= b_address[hemi_pkg::BBits-1] & (b_address != hemi_pkg::ProductPort);
     port_q         <= port_d;
     mirror_q       <= mirror;
   end
@@ -85,7 +90,7 @@ module hemi_datapath (
   // Shift stage.
   logic                 negative_q, negate, execute;
   logic [hemi_pkg::ShiftBits-1:0] variable_q, distance;
-  logic [         55:0] product, b_port, b_word, b;
+  logic [         55:0] product, b_port, b_word, b_here, b;
   logic signed [  56:0] unshifted, shifted;
   logic [ hemi_pkg::WordBits-1:0] a_3_q;
   logic [         55:0] b_3_q;
@@ -98,7 +103,7 @@ module hemi_datapath (
   hemi_multiplier i_multiplier (
       .clk_i,
       .a_i      (a_i[31:0]),
-      .b_i      (b_i[23:0]),
+      .b_i      (b_here[23:0]),
       .product_o(product)
   );
 
@@ -110,9 +115,10 @@ module hemi_datapath (
       .negative_o (mirror)
   );
 
-  assign b_port = {{36{port_q[19]}}, port_q};
+  assign b_port = {{24{port_q[31]}}, port_q};
   assign b_word = {{2{b_i[hemi_pkg::WordBits-1]}}, b_i};
-  assign b = from_product_q ? product : from_port_q ? b_port : b_word;
+  assign b_here = from_port_q ? b_port : b_word;
+  assign b      = from_product_q ? product : b_here;
   assign distance = distance_q == hemi_pkg::VariableShift ? variable_q : distance_q;
   assign unshifted = {b, 1'b0};
   assign shifted = unshifted >>> distance;
@@ -177,6 +183,7 @@ module hemi_datapath (
   logic saturate, clipped;
 
   hemi_quantiser i_quantiser (
+      .clk_i,
       .sum_i     (sum_q),
       .mode_i    (mode_4_q),
       .word_o    (result_o),

@@ -15,12 +15,6 @@ module hemi_state_memory (
   (* no_rw_check *)
   logic [hemi_pkg::WordBits-1:0] memory_q[hemi_pkg::StateWords];
 
-  // Constants stand behind the state and are never written; everything else is cleared after reset as well.
-  initial begin
-    for (int i = 0; i < hemi_pkg::StateWords; i = i + 1) memory_q[i] = '0;
-    `include "hemi_constants.svh"
-  end
-
   always_ff @(posedge clk_i) begin
     a_o <= memory_q[a_address_i];
     b_o <= memory_q[b_address_i];

@@ -33,6 +33,14 @@ struct Record {
   bool operator==(const Record&) const = default;
 };
 
+/// What the three DACs get from one sample, raw words of config::dac; they act two samples later.
+struct DacWords {
+  std::int32_t drive = 0;
+  std::int32_t rebalance = 0;
+  std::int32_t quadrature = 0;
+  bool operator==(const DacWords&) const = default;
+};
+
 /// Receives the outputs of the blocks; within one tap the values come in order of time.
 class TapSink {
  public:
@@ -51,6 +59,10 @@ class Engine {
   virtual void reset(const RegisterValues& values) = 0;
   /// Feeds sample pairs in at the ADC.
   virtual void samples(std::span<const SamplePair> input, std::vector<Record>& output) = 0;
+  /// Feeds one sample pair in and returns its DAC words: the closed loop's way. A clocked engine may hand a
+  /// record over some samples after the one that completed it; drain() brings what is left.
+  virtual DacWords step(const SamplePair& sample, std::vector<Record>& output) = 0;
+  virtual void drain(std::vector<Record>& /*output*/) {}
   /// Feeds one telemetry sample in behind the tracker: frequency [nominal Hz], rate [deg/h]; appends one
   /// record.
   virtual void telemetry(double frequency_hz, double rate_dph, bool valid, std::vector<Record>& output) = 0;

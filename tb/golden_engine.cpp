@@ -2,6 +2,8 @@
 #include "tb/golden_engine.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "tb/registers.hpp"
@@ -43,6 +45,13 @@ class GoldenEngine : public Engine, private golden::TapListener {
     for (const auto& record : records) output.push_back({record.words});
   }
 
+  DacWords step(const SamplePair& sample, std::vector<Record>& output) override {
+    step_records_.clear();
+    const golden::DacWords words = chain_->step(sample.x, sample.y, sample.gap, step_records_);
+    for (const auto& record : step_records_) output.push_back({record.words});
+    return {dac_word(words.drive), dac_word(words.rebalance), dac_word(words.quadrature)};
+  }
+
   void telemetry(double frequency_hz, double rate_dph, bool valid, std::vector<Record>& output) override {
     std::vector<golden::ChainRecord> records;
     if (quantised()) {
@@ -61,6 +70,13 @@ class GoldenEngine : public Engine, private golden::TapListener {
  private:
   bool quantised() const { return precision_ == golden::Precision::quantised; }
 
+  /// Nearest raw word: the word itself when quantised; the ideal chain leaves this rounding to the DAC.
+  static std::int32_t dac_word(double value) {
+    const long limit = 1L << (config::dac.width - 1);
+    return static_cast<std::int32_t>(
+        std::clamp(std::lround(std::ldexp(value, config::dac.fraction)), -limit, limit - 1));
+  }
+
   void tap(config::TapIndex index, double value) override {
     sink_->tap(index, static_cast<std::int64_t>(std::ldexp(value, config::taps[index].format.fraction)));
   }
@@ -69,6 +85,7 @@ class GoldenEngine : public Engine, private golden::TapListener {
   golden::Precision precision_;
   std::optional<golden::Chain> chain_;
   TapSink* sink_ = nullptr;
+  std::vector<golden::ChainRecord> step_records_;
 };
 
 }  // namespace

@@ -37,6 +37,17 @@ class HlsEngine : public Engine {
     }
   }
 
+  DacWords step(const SamplePair& sample, std::vector<Record>& output) override {
+    if (sink_ == nullptr) {
+      hls::NoProbe probe;
+      run({&sample, 1}, output, probe);
+    } else {
+      SinkProbe probe{sink_};
+      run({&sample, 1}, output, probe);
+    }
+    return {core_.dac_drive(), core_.dac_rebalance(), core_.dac_quadrature()};
+  }
+
   void telemetry(double frequency_hz, double rate_dph, bool valid, std::vector<Record>& output) override {
     const std::int64_t frequency = to_raw(frequency_hz, config::frequency, "frequency_hz");
     const std::int64_t rate = to_raw(rate_dph, config::rate, "rate_dph");

@@ -36,10 +36,17 @@ inline double to_value(std::int64_t raw, config::Format format) {
 }
 
 /// Formats of the words of a record, in the order of config::RecordWord.
-inline constexpr std::array<config::Format, config::record_words> record_formats = {
-    config::frequency,       config::temperature, config::derivative, config::amplitude_sum,
-    config::phase_error_sum, config::bias,        config::rate,       config::rate,
-    config::Format{33, 0}};
+inline constexpr std::array<config::Format, config::record_words> record_formats = {config::frequency,
+                                                                                    config::temperature,
+                                                                                    config::derivative,
+                                                                                    config::amplitude_sum,
+                                                                                    config::phase_error_sum,
+                                                                                    config::command_sum,
+                                                                                    config::command_sum,
+                                                                                    config::bias,
+                                                                                    config::rate,
+                                                                                    config::rate,
+                                                                                    config::status};
 
 /// A record from raw words.
 template <class Words>

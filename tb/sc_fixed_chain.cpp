@@ -30,6 +30,11 @@ class ScFixedEngine : public Engine {
     }
   }
 
+  DacWords step(const SamplePair& sample, std::vector<Record>& output) override {
+    samples({&sample, 1}, output);
+    return {core_.dac_drive(), core_.dac_rebalance(), core_.dac_quadrature()};
+  }
+
   void telemetry(double frequency_hz, double rate_dph, bool valid, std::vector<Record>& output) override {
     hls_on_sc_fixed::Record record;
     hls_on_sc_fixed::NoProbe probe;

@@ -20,16 +20,16 @@ namespace {
 constexpr int word_bits = 54;
 constexpr std::uint64_t word_mask = (std::uint64_t{1} << word_bits) - 1;
 
-constexpr std::array<config::Format, config::record_words> record_formats = {
-    config::frequency,       config::temperature, config::derivative, config::amplitude_sum,
-    config::phase_error_sum, config::bias,        config::rate,       config::rate,
-    config::Format{33, 0}};
-
 std::int64_t extend(std::uint64_t word) {
   return static_cast<std::int64_t>(word << (64 - word_bits)) >> (64 - word_bits);
 }
 
-/// Model: a verilated hemi_core; Checked: with hazard checks and able to write waves.
+std::int32_t dac_word(std::uint16_t bits) {
+  static_assert(config::dac.width == 16, "a DAC word fills its port");
+  return static_cast<std::int16_t>(bits);
+}
+
+/// Model: a verilated hemi_core; Checked: with hazard checks, checks of the DAC port and able to write waves.
 template <class Model, bool Checked>
 class RtlEngine : public Engine {
  public:
@@ -61,22 +61,34 @@ class RtlEngine : public Engine {
     model_.sample_valid_i = 0;
     model_.register_valid_i = 0;
     model_.rst_ni = 0;
+    offered_ = strobes_ = 0;
+    dac_ = {};
     for (int i = 0; i < reset_clocks; ++i) clock();
     model_.rst_ni = 1;
-    next_offer_ = 0;
+    next_offer_ = clocks_;
     records_.clear();
     for (int i = 0; i < config::register_count; ++i) write_register(i, image[i]);
   }
 
   void samples(std::span<const SamplePair> input, std::vector<Record>& output) override {
-    model_.sample_telemetry_i = 0;
-    for (const SamplePair& pair : input) {
-      model_.sample_x_i = static_cast<std::uint32_t>(pair.x) & adc_mask();
-      model_.sample_y_i = static_cast<std::uint32_t>(pair.y) & adc_mask();
-      model_.sample_gap_i = pair.gap;
-      offer();
-    }
+    for (const SamplePair& pair : input) offer(pair);
     drain(output);
+  }
+
+  DacWords step(const SamplePair& sample, std::vector<Record>& output) override {
+    // Words of samples() that are still on their way belong to samples before this one.
+    wait_for([this] { return strobes_ == offered_; });
+    offer(sample);
+    wait_for([this] { return strobes_ == offered_; });
+    if constexpr (Checked) check_time();
+    hand_over(output);
+    return dac_;
+  }
+
+  void drain(std::vector<Record>& output) override {
+    wait_for([this] { return model_.busy_o == 0; });
+    if (strobes_ != offered_) throw std::runtime_error("rtl: not one strobe of DAC words a sample");
+    hand_over(output);
   }
 
   void telemetry(double frequency_hz, double rate_dph, bool valid, std::vector<Record>& output) override {
@@ -125,12 +137,45 @@ class RtlEngine : public Engine {
     edge(true);
     edge(false);
     ++clocks_;
+    if constexpr (Checked) check_dac();
+    if (model_.dac_valid_o) take_dac_words();
+  }
+
+  DacWords dac_ports() const {
+    return {dac_word(model_.dac_drive_o), dac_word(model_.dac_rebalance_o),
+            dac_word(model_.dac_quadrature_o)};
+  }
+
+  void take_dac_words() {
+    ++strobes_;
+    dac_ = dac_ports();
+  }
+
+  /// Without a strobe nothing moves, and no sample has two.
+  void check_dac() const {
+    if (model_.dac_valid_o ? strobes_ == offered_ : dac_ports() != dac_)
+      throw std::runtime_error("rtl: DAC words without a sample");
   }
 
   void take_word() {
     const int index = model_.record_index_o;
     record_.words[index] = to_value(extend(model_.record_word_o), record_formats[index]);
     if (model_.record_last_o) records_.push_back(record_);
+  }
+
+  /// A sample's words are there before the next sample; a host that takes no records may stop them.
+  void check_time() const {
+    if (options_.clocks_per_sample > 0 && options_.back_pressure_probability == 0 && clocks_ > next_offer_)
+      throw std::runtime_error("rtl: DAC words later than their sample's clocks");
+  }
+
+  void offer(const SamplePair& pair) {
+    model_.sample_telemetry_i = 0;
+    model_.sample_x_i = static_cast<std::uint32_t>(pair.x) & adc_mask();
+    model_.sample_y_i = static_cast<std::uint32_t>(pair.y) & adc_mask();
+    model_.sample_gap_i = pair.gap;
+    ++offered_;
+    offer();
   }
 
   void offer() {
@@ -142,8 +187,8 @@ class RtlEngine : public Engine {
     model_.sample_valid_i = 0;
   }
 
-  void drain(std::vector<Record>& output) {
-    wait_for([this] { return model_.busy_o == 0; });
+  void hand_over(std::vector<Record>& output) {
+    if (records_.empty()) return;
     output.insert(output.end(), records_.begin(), records_.end());
     records_.clear();
   }
@@ -175,6 +220,9 @@ class RtlEngine : public Engine {
   std::vector<Record> records_;
   std::uint64_t clocks_ = 0;
   std::uint64_t next_offer_ = 0;
+  std::uint64_t offered_ = 0;  ///< samples since the reset
+  std::uint64_t strobes_ = 0;  ///< of the DAC port since then
+  DacWords dac_;               ///< with the last of them
 };
 
 }  // namespace

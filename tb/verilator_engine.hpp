@@ -16,8 +16,9 @@ struct RtlOptions {
   double input_gap_probability = 0;      ///< that a clock passes before the next sample is offered
   double back_pressure_probability = 0;  ///< that a record word is not taken at a clock
   int clocks_per_sample = 0;             ///< least clocks from one sample to the next
-  bool checks = false;                   ///< stop at a read of a word that is not there yet; slower
-  std::filesystem::path waves{};         ///< FST file of all signals (implies checks); empty for none
+  bool checks = false;  ///< stop at a read of a word that is not there yet, and at DAC words that move
+                        ///< without their strobe or come later than clocks_per_sample; slower
+  std::filesystem::path waves{};  ///< FST file of all signals (implies checks); empty for none
 };
 
 /// The SystemVerilog core of rtl/ under Verilator: config::Wide when `wide`, else config::Reference. Throws

@@ -154,12 +154,24 @@ ChainBudget quantisation_budget(const OperatingPoint& point, const RegisterValue
   const double in_phase_worst = (std::abs(c) + std::abs(s)) * (decimated.worst(product_y) + turned) + word;
   const double in_phase =
       length_y * std::abs(c * std::cos(point.secondary_phase_rad) + s * std::sin(point.secondary_phase_rad));
+  const bool control = modulo(values[config::reg_control], 2.0) != 0.0;
+  const double source_gain = control ? std::abs(values[config::reg_rebalance_proportional]) : 1.0;
+  const Budget part{power_of_two(-config::command_integral.fraction - 1),
+                    std::sqrt(rounding_variance(config::command_integral.fraction))};
+  const double command_step = power_of_two(-config::command.fraction);
+  const double source_worst = source_gain * in_phase_worst + (control ? part.worst + command_step : 0.0);
+  const double source_variance =
+      control ? square(part.rms) + rounding_variance(config::command.fraction) : 0.0;
+  // Both have the same sign for a positive command.
+  const double source_constant = source_gain * in_phase * chord + (control ? command_step / 2.0 : 0.0);
+  const double in_phase_variance = (square(c) + square(s)) * decimated.variance(product_y, triangle) +
+                                   rounding_variance(config::baseband.fraction) * triangle.squaredNorm();
   budget.rate_dph = {
-      triangle.sum() * (rate_gain * in_phase_worst + power_of_two(-config::rate_tick.fraction - 1)) +
+      triangle.sum() * (rate_gain * source_worst + power_of_two(-config::rate_tick.fraction - 1)) +
           power_of_two(-config::rate.fraction - 1),
-      std::sqrt(square(rate_gain) * ((square(c) + square(s)) * decimated.variance(product_y, triangle) +
-                                     rounding_variance(config::baseband.fraction) * triangle.squaredNorm() +
-                                     square(triangle.sum() * in_phase * chord)) +
+      std::sqrt(square(rate_gain) *
+                    (square(source_gain) * in_phase_variance + source_variance * triangle.squaredNorm() +
+                     square(triangle.sum() * source_constant)) +
                 rounding_variance(config::rate_tick.fraction) * triangle.squaredNorm() +
                 rounding_variance(config::rate.fraction))};
   return budget;

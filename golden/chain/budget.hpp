@@ -52,6 +52,11 @@ struct OperatingPoint {
 ///   2^-49 counts as 2^-49 / Ki turns of it.
 /// The nco's steps by Kp of that also pass the 1.5 samples by which nco and detector time differ.
 /// rate: as baseband, of y; the nco's phase difference turns quadrature into in-phase.
+/// rebalance_loop (control register odd): the rate is made of the command, of which this covers the
+///   proportional part, i.e. rebalance_integral = 0 and a settled chain within its limits: Kp times the error
+///   of in-phase, rounded to 2^-40, floored to 2^-30 (mean 2^-31, rms about it 2^-30 / sqrt 12). The
+///   integrals of two chains that see the same samples drift apart without bound, as no plant brings them
+///   together.
 struct ChainBudget {
   Budget nco;                    ///< 1
   Budget baseband;               ///< 1, primary

@@ -32,6 +32,16 @@ ReferencePhaseLoop::Settings loop_settings(const RegisterValues& values) {
           values[reg_loop_frequency], values[reg_amplitude_threshold], values[reg_lock_count]};
 }
 
+bool closes_loops(const RegisterValues& values) {
+  return modulo(values[reg_control], 2.0) != 0.0;
+}
+
+StartUp::Settings start_settings(const RegisterValues& values) {
+  return {closes_loops(values),          values[reg_amplitude_threshold], values[reg_search_amplitude],
+          values[reg_closing_amplitude], values[reg_search_ticks],        values[reg_search_step],
+          values[reg_search_span],       values[reg_holdover_ticks]};
+}
+
 }  // namespace
 
 InstrumentParameters InstrumentParameters::reference() {
@@ -54,10 +64,14 @@ Chain::Chain(Precision precision, const InstrumentParameters& instrument, const 
       instrument_(instrument),
       values_(checked(precision, values)),
       parity_error_(arithmetic_.quantised() && !parity_holds(values)),
+      control_(closes_loops(values)),
       nco_(precision, values[reg_nco_start]),
       cic_(precision, instrument.decimation),
       image_filter_(precision),
+      start_up_(precision, start_settings(values)),
       loop_(precision, loop_settings(values)),
+      actuators_(precision, values),
+      modulator_(precision, {values[reg_modulation_phase], values[reg_modulation_delay]}),
       tracker_(precision),
       rate_filter_(precision, values[reg_rate_gain]),
       thermometer_(precision, values),
@@ -65,7 +79,10 @@ Chain::Chain(Precision precision, const InstrumentParameters& instrument, const 
       bias_model_(precision, values),
       phase_(instrument.decimation),
       cosine_(instrument.decimation),
-      sine_(instrument.decimation) {}
+      sine_(instrument.decimation),
+      carrier_(instrument.decimation),
+      dac_drive_(Eigen::ArrayXd::Zero(instrument.decimation)),
+      dac_rebalance_(Eigen::ArrayXd::Zero(instrument.decimation)) {}
 
 void Chain::samples(const Eigen::Ref<const Eigen::VectorXd>& x_lsb,
                     const Eigen::Ref<const Eigen::VectorXd>& y_lsb, const std::vector<std::uint8_t>* gap,
@@ -83,15 +100,27 @@ void Chain::samples(const Eigen::Ref<const Eigen::VectorXd>& x_lsb,
                     std::any_of(first, first + count, [](std::uint8_t g) { return g != 0; }));
     }
     part_of_tick(x_lsb.segment(done, count), y_lsb.segment(done, count));
+    close_part(count, out);
     done += count;
-    sample_in_tick_ += count;
-    if (sample_in_tick_ < instrument_.decimation) break;
-    sample_in_tick_ = 0;
-    tick();
-    if (++tick_in_output_ < ticks_per_output) continue;
-    tick_in_output_ = 0;
-    output(out);
   }
+}
+
+DacWords Chain::step(double x_lsb, double y_lsb, bool gap, std::vector<ChainRecord>& out) {
+  status_.raise(status_sample_gap, gap);
+  part_of_tick(Eigen::Map<const Eigen::VectorXd>(&x_lsb, 1), Eigen::Map<const Eigen::VectorXd>(&y_lsb, 1));
+  const DacWords words{dac_drive_[0], dac_rebalance_[0], modulator_.quadrature()};
+  close_part(1, out);
+  return words;
+}
+
+void Chain::close_part(Eigen::Index count, std::vector<ChainRecord>& out) {
+  sample_in_tick_ += count;
+  if (sample_in_tick_ < instrument_.decimation) return;
+  sample_in_tick_ = 0;
+  tick();
+  if (++tick_in_output_ < ticks_per_output) return;
+  tick_in_output_ = 0;
+  output(out);
 }
 
 void Chain::part_of_tick(const Eigen::Ref<const Eigen::VectorXd>& x_lsb,
@@ -104,6 +133,12 @@ void Chain::part_of_tick(const Eigen::Ref<const Eigen::VectorXd>& x_lsb,
              sine_.head(count), products);
   status_.raise(status_adc_overload, std::max(x_lsb.maxCoeff(), y_lsb.maxCoeff()) >= full_scale - 1.0 ||
                                          std::min(x_lsb.minCoeff(), y_lsb.minCoeff()) <= -full_scale);
+  // With all commands 0 the words are 0 and no error is carried over: nothing to compute unless somebody
+  // wants to see the carrier.
+  if (control_ || listener_ != nullptr) {
+    modulator_.run(phase_.head(count), carrier_.head(count), dac_drive_.head(count),
+                   dac_rebalance_.head(count));
+  }
   if (listener_ != nullptr) tap_samples(count, products);
 }
 
@@ -114,22 +149,29 @@ void Chain::tap_samples(Eigen::Index count,
     tap(tap_cos, cosine_[i]);
     tap(tap_sin, sine_[i]);
     for (int c = 0; c < channels; ++c) tap(static_cast<TapIndex>(tap_product_xi + c), products(i, c));
+    tap(tap_carrier, carrier_[i]);
+    tap(tap_dac_drive, dac_drive_[i]);
+    tap(tap_dac_rebalance, dac_rebalance_[i]);
   }
 }
 
 void Chain::tick() {
   nco_.set_increment(loop_.increment());
+  modulator_.engage();
   const Cic::Baseband decimated = cic_.tick();
   const Cic::Baseband baseband = image_filter_.tick(decimated);
   const Polar primary = polar(arithmetic_, baseband[channel_xi], baseband[channel_xq]);
   const Secondary secondary = rotate(arithmetic_, baseband[channel_yi], baseband[channel_yq],
                                      values_[reg_demodulation_cos], values_[reg_demodulation_sin]);
-  loop_.tick(primary);
+  actuate(primary, secondary);
   const double tick_phase = tracker_.tick(nco_.phase(), primary.phase_error);
   bool rate_clipped = false;
-  const double rate = rate_filter_.tick(secondary.in_phase, rate_clipped);
+  const double rate =
+      rate_filter_.tick(control_ ? actuators_.commands().rebalance : secondary.in_phase, rate_clipped);
   amplitude_.now += primary.amplitude;
   phase_error_.now += primary.phase_error;
+  drive_.now += actuators_.commands().drive;
+  quadrature_.now += actuators_.commands().quadrature;
 
   status_.raise(status_secondary_saturated, secondary.clipped);
   status_.raise(status_loop_saturated, loop_.clipped());
@@ -143,11 +185,38 @@ void Chain::tick() {
   tap(tap_phase_error, primary.phase_error);
   tap(tap_secondary_in_phase, secondary.in_phase);
   tap(tap_secondary_quadrature, secondary.quadrature);
+  tap(tap_state, start_up_.state());
   tap(tap_loop_integral, loop_.integral());
   tap(tap_loop_increment, loop_.increment());
   tap(tap_lock_counter, loop_.lock_counter());
+  tap_actuators();
   tap(tap_tick_phase, tick_phase);
   tap(tap_rate_tick, rate);
+}
+
+void Chain::actuate(const Polar& primary, const Secondary& secondary) {
+  start_up_.tick(primary.amplitude, loop_.locked());
+  if (start_up_.restart()) loop_.restart(values_[reg_nco_start] + start_up_.search_offset());
+  loop_.tick(primary);
+  actuators_.tick(start_up_.state(), start_up_.low(), primary.amplitude, secondary);
+  modulator_.tick(actuators_.commands(), loop_.increment());
+
+  status_.raise(status_drive_saturated, actuators_.amplitude_loop().saturated());
+  status_.raise(status_quadrature_saturated, actuators_.quadrature_loop().saturated());
+  status_.raise(status_rebalance_saturated, actuators_.rebalance_loop().saturated());
+  status_.raise(status_searching, start_up_.searching());
+  status_.raise(status_starting, start_up_.starting());
+}
+
+void Chain::tap_actuators() {
+  tap(tap_drive_integral, actuators_.amplitude_loop().integral());
+  tap(tap_drive, actuators_.commands().drive);
+  tap(tap_quadrature_integral, actuators_.quadrature_loop().integral());
+  tap(tap_quadrature, actuators_.commands().quadrature);
+  tap(tap_rebalance_integral, actuators_.rebalance_loop().integral());
+  tap(tap_rebalance, actuators_.commands().rebalance);
+  tap(tap_carrier_offset, modulator_.next_offset());
+  tap(tap_dac_quadrature, modulator_.next_quadrature());
 }
 
 void Chain::output(std::vector<ChainRecord>& out) {
@@ -157,6 +226,8 @@ void Chain::output(std::vector<ChainRecord>& out) {
   ChainRecord record{};
   record.words[word_amplitude] = amplitude_.close();
   record.words[word_phase_error] = phase_error_.close();
+  record.words[word_drive] = drive_.close();
+  record.words[word_quadrature] = quadrature_.close();
   bool rate_clipped = false;
   const double rate_dph = rate_filter_.output(rate_clipped);
   status_.raise(status_rate_saturated, rate_clipped);

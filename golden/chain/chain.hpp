@@ -6,12 +6,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "golden/chain/actuators.hpp"
 #include "golden/chain/cic.hpp"
 #include "golden/chain/compensation.hpp"
 #include "golden/chain/frequency_tracker.hpp"
+#include "golden/chain/modulator.hpp"
 #include "golden/chain/nco.hpp"
 #include "golden/chain/phase_detector.hpp"
 #include "golden/chain/reference_phase_loop.hpp"
+#include "golden/chain/start_up.hpp"
 #include "golden/chain/status.hpp"
 
 namespace hemi::golden {
@@ -26,9 +29,9 @@ struct InstrumentParameters {
   static InstrumentParameters wide();
 };
 
-/// One output: the words of config::RecordWord in real units. frequency: nominal Hz; amplitude and phase
-/// error [turns] are sums over 50 ticks; rates and bias in deg/h; derivative as a fraction of its full scale;
-/// status as a number.
+/// One output: the words of config::RecordWord in real units. frequency: nominal Hz; amplitude, phase
+/// error [turns], drive and quadrature commands are sums over 50 ticks; rates and bias in deg/h; derivative
+/// as a fraction of its full scale; status as a number.
 struct ChainRecord {
   std::array<double, config::record_words> words;
 };
@@ -47,7 +50,8 @@ class TapListener {
 ///
 /// Quantised, its taps, words and status bits are those of the fixed-point core bit for bit. Ideal, it is the
 /// same chain without rounding, table, saturation or parity: cosine, sine, arc tangent and magnitude (times
-/// the CORDIC gain) as such; of the status bits those remain that are states of the instrument and not of its
+/// the CORDIC gain) as such. What limits the instrument itself stays: the limits of the actuator loops and
+/// the range of the DACs. Of the status bits those remain that are states of the instrument and not of its
 /// arithmetic.
 class Chain {
  public:
@@ -59,6 +63,10 @@ class Chain {
   /// nonzero where the sample follows a gap, or null.
   void samples(const Eigen::Ref<const Eigen::VectorXd>& x_lsb, const Eigen::Ref<const Eigen::VectorXd>& y_lsb,
                const std::vector<std::uint8_t>* gap, std::vector<ChainRecord>& out);
+
+  /// Takes one sample in, ADC words, and returns what the DACs get with it; the closed loop's way. Its
+  /// records, taps and states are those of samples().
+  DacWords step(double x_lsb, double y_lsb, bool gap, std::vector<ChainRecord>& out);
 
   /// Takes one telemetry sample in and appends its record; words are brought to the nearest of their formats.
   void telemetry(double frequency_hz, double rate_dph, bool valid, std::vector<ChainRecord>& out);
@@ -80,7 +88,10 @@ class Chain {
                     const Eigen::Ref<const Eigen::VectorXd>& y_lsb);
   void tap_samples(Eigen::Index count,
                    const Eigen::Ref<const Cic::Products, 0, Eigen::OuterStride<>>& products);
+  void close_part(Eigen::Index count, std::vector<ChainRecord>& out);
   void tick();
+  void actuate(const Polar& primary, const Secondary& secondary);
+  void tap_actuators();
   void output(std::vector<ChainRecord>& out);
   void finish(ChainRecord record, double frequency_hz, double rate_dph, bool good,
               std::vector<ChainRecord>& out);
@@ -89,11 +100,15 @@ class Chain {
   InstrumentParameters instrument_;
   RegisterValues values_;
   bool parity_error_;
+  bool control_;
 
   Nco nco_;
   Cic cic_;
   ImageFilter image_filter_;
+  StartUp start_up_;
   ReferencePhaseLoop loop_;
+  Actuators actuators_;
+  Modulator modulator_;
   FrequencyTracker tracker_;
   RateFilter rate_filter_;
   Thermometer thermometer_;
@@ -106,9 +121,14 @@ class Chain {
   int outputs_ = 0;  // counted up to the first valid frequency
   IntervalSums amplitude_;
   IntervalSums phase_error_;
+  IntervalSums drive_;
+  IntervalSums quadrature_;
   Eigen::ArrayXd phase_;
   Eigen::ArrayXd cosine_;
   Eigen::ArrayXd sine_;
+  Eigen::ArrayXd carrier_;
+  Eigen::ArrayXd dac_drive_;
+  Eigen::ArrayXd dac_rebalance_;
   TapListener* listener_ = nullptr;
 };
 

@@ -75,16 +75,18 @@ class FrequencyTracker {
   TriangularSum steps_;
 };
 
-/// In-phase secondary times a gain, weighted over two output intervals by a triangle of sum 625. The sum
-/// stays below 625 * 1024, inside the 47 bits that it is accumulated in modulo 2^21: no wrap shows.
+/// In-phase secondary or rebalance command times a gain, weighted over two output intervals by a triangle of
+/// sum 625. The sum stays below 625 * 1024, inside the 47 bits that it is accumulated in modulo 2^21: no wrap
+/// shows.
 class RateFilter {
  public:
   RateFilter(Precision precision, double gain) : arithmetic_(precision), gain_(gain) {}
 
   /// Returns deg/h / 625.
-  double tick(double in_phase, bool& clipped) {
-    const double rate = arithmetic_.saturate(arithmetic_.round(in_phase * gain_, config::rate_tick.fraction),
-                                             config::rate_tick, clipped);
+  double tick(double source, bool& clipped) {
+    // A command of 32 bits times a gain of 24 can need 54: hence the product that is rounded as a whole.
+    const double rate = arithmetic_.saturate(
+        arithmetic_.round_product(source, gain_, config::rate_tick.fraction), config::rate_tick, clipped);
     ticks_.add(rate);
     return rate;
   }

@@ -10,6 +10,7 @@ namespace {
 constexpr int kLines = 1 << config::table_index_bits;
 constexpr int kAngleBits = 2 + config::table_index_bits + config::table_fine_bits;
 constexpr double kPhaseSpan = 32.0;  // turns
+constexpr double kScale = config::table_scale / 1048576.0;
 
 struct QuarterWave {
   std::array<double, kLines + 1> base;
@@ -42,6 +43,12 @@ double interpolated_sine(double angle) {
   return negative ? 0.0 - magnitude : magnitude;
 }
 
+double nco_sine(const Arithmetic& arithmetic, double turns) {
+  const double turn = turns - std::floor(turns);
+  if (arithmetic.quantised()) return interpolated_sine(floor_to(turn, kAngleBits) * power_of_two(kAngleBits));
+  return kScale * std::sin(2.0 * std::numbers::pi * turn);
+}
+
 void Nco::run(Eigen::Index count, Eigen::Ref<Eigen::ArrayXd> phase, Eigen::Ref<Eigen::ArrayXd> cosine,
               Eigen::Ref<Eigen::ArrayXd> sine) {
   // |phase| <= 16 and |increment| <= 1: up to the 16th sample of a piece the sum stays within 32 turns, which
@@ -64,7 +71,6 @@ void Nco::run(Eigen::Index count, Eigen::Ref<Eigen::ArrayXd> phase, Eigen::Ref<E
       return interpolated_sine(ahead < full ? ahead : ahead - full);
     });
   } else {
-    constexpr double kScale = config::table_scale / 1048576.0;
     sine.head(count) = kScale * (2.0 * std::numbers::pi * turn).sin();
     cosine.head(count) = kScale * (2.0 * std::numbers::pi * turn).cos();
   }

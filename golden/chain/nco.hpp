@@ -12,6 +12,10 @@ namespace hemi::golden {
 /// number in [0, 2^24).
 double interpolated_sine(double angle);
 
+/// Sine that the nco gives at a phase [turns]: interpolated_sine of its 24 bits behind the point when
+/// quantised, S / 2^20 times the sine itself when ideal.
+double nco_sine(const Arithmetic& arithmetic, double turns);
+
 /// Numerically controlled oscillator: theta[n+1] = theta[n] + increment, gives (cos theta, sin theta) S /
 /// 2^20.
 ///

@@ -23,6 +23,12 @@ class ReferencePhaseLoop {
       : arithmetic_(precision), settings_(settings), integral_(settings.start), increment_(settings.start) {}
 
   void tick(const Polar& detected);
+  /// Unlocked at this increment, turns a sample; the tick that follows works on from it.
+  void restart(double increment) {
+    integral_ = increment_ = arithmetic_.wrap(increment, config::increment);
+    counter_ = 0.0;
+    locked_ = false;
+  }
 
   double integral() const { return integral_; }    ///< turns a sample
   double increment() const { return increment_; }  ///< turns a sample, for the tick after next

@@ -13,12 +13,14 @@ class Status {
   void raise(config::StatusBit bit, bool condition = true) {
     if (condition) live_.set(bit);
   }
-  /// Closes the output: sticky 2^16 + live. Nothing sticks before the first output that is locked and valid.
+  /// Closes the output: sticky 2^24 + live. Nothing sticks before the first output that is locked,
+  /// started up and valid.
   double output() {
-    if (!live_[config::status_unlocked] && !live_[config::status_frequency_invalid]) armed_ = true;
+    armed_ = armed_ || !(live_[config::status_unlocked] || live_[config::status_starting] ||
+                         live_[config::status_frequency_invalid]);
     if (armed_) sticky_ |= live_;
-    const double word =
-        static_cast<double>(sticky_.to_ulong()) * 65536.0 + static_cast<double>(live_.to_ulong());
+    const double word = static_cast<double>(sticky_.to_ulong()) * power_of_two(config::status_shift) +
+                        static_cast<double>(live_.to_ulong());
     live_.reset();
     return word;
   }

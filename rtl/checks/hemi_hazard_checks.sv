@@ -11,7 +11,8 @@ module hemi_hazard_checks (
 
   logic [hemi_pkg::AddressBits-1:0] dst_q[Stages];
   logic [Stages-1:0] pending_q;
-  logic [hemi_pkg::AddressBits-1:0] a, b, dst;
+  logic [hemi_pkg::AddressBits-1:0] a, dst;
+  logic [hemi_pkg::BBits-1:0] b;
   logic [hemi_pkg::OperationBits-1:0] operation;
   logic [hemi_pkg::ConditionBits-1:0] condition;
   logic counts, multiplies, reads_a, reads_b;
@@ -31,7 +32,7 @@ module hemi_hazard_checks (
     dst_q[0]  <= dst;
     for (int i = 1; i < Stages; i = i + 1) dst_q[i] <= dst_q[i-1];
     for (int i = 0; i < Stages; i = i + 1) begin
-      if (rst_ni & pending_q[i] & ((reads_a & (dst_q[i] == a)) | (reads_b & (dst_q[i] == b)))) begin
+      if (rst_ni & pending_q[i] & ((reads_a & (dst_q[i] == a)) | (reads_b & ({1'b0, dst_q[i]} == b)))) begin
         $display("hazard: word %0d is read %0d clocks behind its instruction", dst_q[i], i + 1);
         $finish;
       end

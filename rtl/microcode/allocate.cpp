@@ -13,6 +13,7 @@ namespace {
 
 struct Life {
   int word;
+  bool background;
   int first;
   int last;
 };
@@ -26,15 +27,15 @@ const Region* home(const Assembler& m, Word word, Word nowhere) {
       if (!written && !reads(i, word)) continue;
       if (found == &region) continue;
       const bool fresh = written && i.condition == Condition::always && !reads(i, word);
-      if (found != nullptr || !fresh || !region.background) return nullptr;
+      if (found != nullptr || !fresh) return nullptr;
       found = &region;
     }
   }
   return found;
 }
 
-Life life(const Schedule& s, Word word, Word nowhere) {
-  Life span{word.address, -1, -1};
+Life life(const Schedule& s, Word word, bool background, Word nowhere) {
+  Life span{word.address, background, -1, -1};
   for (std::size_t address = 0; address < s.program.size(); ++address) {
     const Instruction& i = s.program[address];
     if (!(writes(i, nowhere) && i.dst == word) && !reads(i, word)) continue;
@@ -51,23 +52,25 @@ void allocate(const Assembler& m, Schedule& s) {
   int next = first_state_address;
   std::vector<Life> lives;
   for (const auto& [name, word] : m.words()) {
-    if (word == nowhere || home(m, word, nowhere) == nullptr) {
+    const Region* region = word == nowhere ? nullptr : home(m, word, nowhere);
+    if (region == nullptr) {
       s.addresses[word.address] = next++;
     } else {
-      lives.push_back(life(s, word, nowhere));
+      lives.push_back(life(s, word, region->background, nowhere));
     }
   }
   std::sort(lives.begin(), lives.end(), [](const Life& a, const Life& b) { return a.first < b.first; });
   std::vector<Life> owners;  // the last word of each shared address
   for (const Life& l : lives) {
-    const auto free =
-        std::find_if(owners.begin(), owners.end(), [&](const Life& o) { return o.last < l.first; });
+    const auto free = std::find_if(owners.begin(), owners.end(), [&](const Life& o) {
+      return o.last < l.first && o.background == l.background;
+    });
     const auto place = free == owners.end() ? owners.insert(owners.end(), l) : free;
     *place = l;
     s.addresses[l.word] = next + static_cast<int>(place - owners.begin());
   }
   s.state_end = next + static_cast<int>(owners.size());
-  if (s.state_end > m.first_constant()) throw std::logic_error("the state memory is full");
+  if (s.state_end > first_reserved) throw std::logic_error("the state memory is full");
 }
 
 }  // namespace hemi::microcode

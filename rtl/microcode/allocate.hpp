@@ -7,9 +7,10 @@
 
 namespace hemi::microcode {
 
-/// Fills in s.addresses and s.state_end. A word that lives within one background region, from a write at
-/// which it owes nothing to its past until its last use, gives its address to the next; all others keep one
-/// to themselves. Throws std::logic_error when the state memory is full.
+/// Fills in s.addresses and s.state_end. A word that lives within one region, from a write at which it owes
+/// nothing to its past until its last use, gives its address to the next of its kind (samples interrupt the
+/// background: they have their own); all others keep one to themselves. Throws std::logic_error when the
+/// state memory is full.
 void allocate(const Assembler& m, Schedule& s);
 
 }  // namespace hemi::microcode

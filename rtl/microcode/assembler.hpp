@@ -38,16 +38,19 @@ constexpr int word_bits = 54;
 constexpr int state_words = 256;
 constexpr int address_bits = 8;
 
-/// An address of the state memory or, from port_base on, a port of the datapath (operand b alone); from
-/// symbolic_base on a name that gets its address when the program is scheduled (allocate.hpp).
+/// An address of the state memory or, from port_base on, a port of the datapath or a constant (operand b
+/// alone); from symbolic_base on a name that gets its address when the program is scheduled (allocate.hpp).
 struct Word {
   int address = 0;
   bool operator==(const Word&) const = default;
 };
-constexpr int port_base = 248;
+constexpr int port_base = state_words;
+constexpr int constant_base = port_base + 8;
+constexpr int operand_b_bits = address_bits + 1;
 constexpr int symbolic_base = 1000;
+/// Ports and constants: not in the state memory.
 constexpr bool is_port(Word word) {
-  return word.address >= port_base && word.address < state_words;
+  return word.address >= port_base && word.address < 1 << operand_b_bits;
 }
 constexpr Word product_port{port_base};       ///< multiplier, 56 bits
 constexpr Word lookup_port{port_base + 1};    ///< magnitude of the sine or cosine that was looked up
@@ -55,6 +58,18 @@ constexpr Word sample_x_port{port_base + 2};  ///< the sample being worked on
 constexpr Word sample_y_port{port_base + 3};
 constexpr Word gap_port{port_base + 4};   ///< -1 when the sample is marked as following a gap, else 0
 constexpr Word live_port{port_base + 5};  ///< live status bits; reading them clears them
+
+/// The last words of the state memory: one that is never written, and those whose results go out to the DACs
+/// as well. Writing dac_rebalance_port completes a sample's words.
+constexpr Word zero_word{state_words - 1};
+constexpr Word dac_drive_port{state_words - 2};
+constexpr Word dac_rebalance_port{state_words - 3};
+constexpr Word dac_quadrature_port{state_words - 4};
+constexpr int first_reserved = dac_quadrature_port.address;
+constexpr bool is_dac_port(Word word) {
+  return word.address >= first_reserved && word.address < zero_word.address;
+}
+constexpr int constant_bits = 32;  ///< of a constant, sign-extended
 
 /// Clocks from an instruction to the first one that may use its result.
 namespace latency {
@@ -64,6 +79,7 @@ constexpr int jump = 3;      ///< the sign, by a jump
 constexpr int product = 2;   ///< exactly: the next product follows a clock later
 constexpr int lookup = 3;    ///< exactly
 constexpr int shift = 1;     ///< variable shift
+constexpr int clip = 1;      ///< exactly: whether the sum was clipped, by a residual
 constexpr int live = 4;      ///< a status bit, by a reader of live_port
 }  // namespace latency
 
@@ -94,10 +110,12 @@ enum class Control {
 /// Shift distance that stands for the variable shift.
 constexpr int variable_shift = 63;
 
-/// How the exact sum becomes a word: the low `width` bits, or clipped to them.
+/// How the exact sum becomes a word: the low `width` bits, or clipped to them. A residual is 0 instead when
+/// the instruction a clock before clipped.
 struct Mode {
   int width = word_bits;
   bool saturate = false;
+  bool residual = false;
   auto operator<=>(const Mode&) const = default;
 };
 
@@ -114,14 +132,15 @@ struct Instruction {
   int event = no_event;  ///< status bit raised when the sum clips (saturating modes) or is negative (others)
   int tap = -1;
   Control control = Control::next;
-  std::string target;  ///< of a jump
+  bool before_residual = false;  ///< the next line is a residual and follows at the next clock
+  std::string target;            ///< of a jump
   const char* block = "";
 
   Instruction& floor(int bits) { return shift = bits, *this; }
   Instruction& round(int bits) { return shift = bits, round_half_up = true, *this; }
   Instruction& wrap(config::Format f) { return wrap(f.width); }
-  Instruction& wrap(int width) { return mode = {width, false}, *this; }
-  Instruction& saturate(config::Format f) { return mode = {f.width, true}, *this; }
+  Instruction& wrap(int width) { return mode = {width, false, false}, *this; }
+  Instruction& saturate(config::Format f) { return mode = {f.width, true, false}, *this; }
   Instruction& raise(config::StatusBit bit) { return event = bit, *this; }
   Instruction& set_negative() { return sets_negative = true, *this; }
   Instruction& if_negative() { return condition = Condition::negative, *this; }
@@ -152,9 +171,9 @@ class Assembler {
   /// The word of that name, zero after reset.
   Word word(const std::string& name);
   Word word(const std::string& name, int index) { return word(name + "_" + std::to_string(index)); }
-  /// A word that always holds `value`.
+  /// A word that always holds `value` of constant_bits; operand b alone, except 0.
   Word constant(std::int64_t value);
-  Word zero() { return constant(0); }
+  Word zero() const { return zero_word; }
   Word reg(config::RegisterIndex index) const { return {index}; }
   /// Where results go that are only compared or sent out.
   Word nowhere() { return word("nowhere"); }
@@ -181,13 +200,15 @@ class Assembler {
   Word product(Word wide, Word narrow);
   /// Cosine or sine of the 24 phase bits of `phase` into dst.
   Instruction& look_up(Word dst, Word phase, bool cosine);
+  /// dst = sum rounded and clipped to `format`; `error` = what the rounding left, 0 where it clipped.
+  /// Returns the first of the two instructions.
+  Instruction& shape(Word dst, Word error, Word sum, int shift, config::Format format);
 
   int mode_code(Mode mode) const;
   const std::vector<Mode>& modes() const { return modes_; }
   const std::deque<Region>& regions() const { return regions_; }
   const std::map<std::string, Word>& words() const { return words_; }
   const std::map<std::int64_t, Word>& constants() const { return constants_; }
-  int first_constant() const { return next_constant_ + 1; }
   std::string name_of(Word word) const;
 
  private:

@@ -7,7 +7,7 @@
 //
 // in       offset, derivative Q1.23; coefficients Q19.13 deg/h; rate Q20.16 deg/h
 // out      bias Q19.13, compensated Q20.16 deg/h
-// clocks   23 an output
+// clocks   24 an output
 // rounding half up and clipped at each step (bias_saturated, compensation_saturated)
 #include "rtl/microcode/blocks.hpp"
 

@@ -13,6 +13,12 @@ inline const char* const channel_names[channels] = {"xi", "xq", "yi", "yq"};
 
 void nco(Assembler& m);
 void demodulator(Assembler& m);
+void modulator_carrier(Assembler& m);
+void modulator_sample(Assembler& m);
+void modulator_take_over(Assembler& m);
+void modulator_tick(Assembler& m);
+void start_up(Assembler& m);
+void actuator_loops(Assembler& m);
 void cic_sample(Assembler& m);
 void cic_tick(Assembler& m);
 void image_filter(Assembler& m);

@@ -16,7 +16,8 @@ bool reads_sample(const Instruction& i) {
 }
 
 bool needs_order(const Instruction& i) {
-  return i.control == Control::emit || reads_sample(i);
+  return i.control == Control::emit || reads_sample(i) ||
+         (i.condition != Condition::never && is_dac_port(i.dst));
 }
 
 int memory_distance(const Instruction& first, const Instruction& second, Word nowhere) {
@@ -69,7 +70,7 @@ bool writes(const Instruction& i, Word nowhere) {
 int result_latency(const Instruction& i) {
   if (i.operation == Operation::multiply) return latency::product;
   if (i.operation == Operation::look_up) return latency::lookup;
-  return 0;
+  return i.before_residual ? latency::clip : 0;
 }
 
 int distance(const Instruction& first, const Instruction& second, Word nowhere) {

@@ -13,7 +13,8 @@ bool reads_a(const Instruction& i);
 bool reads_b(const Instruction& i);  ///< from the state memory
 bool reads(const Instruction& i, Word word);
 bool writes(const Instruction& i, Word nowhere);
-/// Multiplications and look-ups: the next line takes their result, exactly so many clocks later (0: neither).
+/// Multiplications, look-ups and words with a residual: the next line takes their result, exactly so many
+/// clocks later (0: none of them).
 int result_latency(const Instruction& i);
 
 /// Clocks from `first` to `second`, which stands behind it in the text; 0 when they may go in any order.

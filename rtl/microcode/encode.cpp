@@ -13,8 +13,8 @@ std::uint64_t encode(const Instruction& i, const Assembler& m, const Schedule& s
   int b = address(i.b);
   if (i.control == Control::jump) {
     const int target = s.entries.at(i.target);
-    a = target >> address_bits;
-    b = target & ((1 << address_bits) - 1);
+    a = target >> operand_b_bits;
+    b = target & ((1 << operand_b_bits) - 1);
   }
   const std::array<int, fields.size()> values = {b,
                                                  a,

@@ -16,16 +16,16 @@ struct Field {
 };
 
 /// From the lowest bit up. A jump's target stands in b and a.
-constexpr std::array<Field, 11> fields = {{{"B", address_bits},
+constexpr std::array<Field, 11> fields = {{{"B", operand_b_bits},
                                            {"A", address_bits},
                                            {"Dst", address_bits},
                                            {"Shift", 6},
                                            {"Round", 1},
-                                           {"Mode", 4},
+                                           {"Mode", 5},
                                            {"Operation", 3},
                                            {"Condition", 2},
                                            {"SetsNegative", 1},
-                                           {"Event", 4},
+                                           {"Event", 5},
                                            {"Control", 3}}};
 
 constexpr int instruction_bits = [] {

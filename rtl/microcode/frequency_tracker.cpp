@@ -5,8 +5,9 @@
 //   P_k = (phase_{k-4} + phase_{k-5}) / 2 + phase_error_k,  sum of 25 unwrapped P, differenced
 //
 // in       nco phase after the tick Q5.48, phase_error Q0.32, amplitude Q2.32, once a tick
-// out      frequency Q17.29 in nominal Hz; sums of 50 amplitudes and 50 phase errors, once an output
-// clocks   15 a tick, 9 an output
+// out      frequency Q17.29 in nominal Hz; sums of 50 amplitudes, phase errors, drive and quadrature
+//          commands, once an output
+// clocks   16 a tick, 15 an output
 // rounding phase cut to 2^-32 turns; all words wrap
 #include "rtl/microcode/blocks.hpp"
 
@@ -15,10 +16,15 @@ namespace {
 
 constexpr int delay = 4;  ///< ticks from the nco's phase to the detector's
 
-void sum_of_two(Assembler& m, Word dst, const std::string& name) {
-  const Word sum = m.word(name + "_sum");
-  const Word last = m.word("last_" + name + "_sum");
-  m.add(dst, sum, last);
+void sum_up(Assembler& m, const std::string& name, const char* term) {
+  const Word sum = m.word(name + "_interval");
+  m.add(sum, sum, m.word(term));
+}
+
+void sum_of_two(Assembler& m, const std::string& name) {
+  const Word sum = m.word(name + "_interval");
+  const Word last = m.word("last_" + name + "_interval");
+  m.add(m.word(name + "_word"), sum, last);
   m.move(last, sum);
   m.clear(sum);
 }
@@ -46,8 +52,10 @@ void frequency_tracker_tick(Assembler& m) {
   m.move(m.word("last_tick_phase"), tick_phase);
   m.add(total, total, advance).wrap(config::total_phase);
   m.add(m.word("phase_sum"), m.word("phase_sum"), total).wrap(config::total_phase);
-  m.add(m.word("amplitude_sum"), m.word("amplitude_sum"), m.word("amplitude"));
-  m.add(m.word("error_sum"), m.word("error_sum"), m.word("phase_error"));
+  sum_up(m, "amplitude", "amplitude");
+  sum_up(m, "error", "phase_error");
+  sum_up(m, "drive", "drive");
+  sum_up(m, "quadrature", "quadrature");
 }
 
 void frequency_tracker_output(Assembler& m) {
@@ -57,8 +65,7 @@ void frequency_tracker_output(Assembler& m) {
   m.subtract(m.word("frequency"), sum, last).wrap(config::frequency).send_to(config::tap_frequency);
   m.move(last, sum);
   m.clear(sum);
-  sum_of_two(m, m.word("amplitude_word"), "amplitude");
-  sum_of_two(m, m.word("error_word"), "error");
+  for (const char* name : {"amplitude", "error", "drive", "quadrature"}) sum_of_two(m, name);
 }
 
 }  // namespace hemi::microcode

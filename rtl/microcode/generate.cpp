@@ -31,7 +31,7 @@ void generate(const std::string& name, const std::filesystem::path& directory) {
   write(directory / "hemi_pkg.sv", package(m, s));
   write(directory / "hemi_program.sv", program_memory(m, s));
   write(directory / "hemi_modes.sv", mode_table(m));
-  write(directory / "hemi_constants.svh", constant_memory(m));
+  write(directory / "hemi_constants.sv", constant_table(m));
   write(directory / "hemi_sine_rom.sv", sine_memory());
   write(directory / "program.lst", listing(m, s));
   write(directory / "summary.txt", summary(m, s));

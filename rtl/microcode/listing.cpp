@@ -31,7 +31,8 @@ std::string remarks(const Instruction& i) {
                                          "; take", "; load_shift"};
   const bool computes = i.condition != Condition::never && i.control != Control::jump;
   std::string text;
-  if (computes) text += fmt::format(" {}{}", i.mode.saturate ? "sat" : "", i.mode.width);
+  if (computes)
+    text += fmt::format(" {}{}", i.mode.saturate ? "sat" : i.mode.residual ? "residual" : "", i.mode.width);
   if (i.condition == Condition::negative) text += " if negative";
   if (i.condition == Condition::not_negative) text += " if not negative";
   if (i.sets_negative) text += "; sets negative";
@@ -62,8 +63,8 @@ std::string summary(const Assembler& m, const Schedule& s) {
   std::string text = fmt::format("instrument {}\n", m.instrument().name);
   text +=
       fmt::format("program words {} ({} in use), {} bits each\n", s.program.size(), used, instruction_bits);
-  text += fmt::format("state words {} for {} names, constants {}, of {}\n", s.state_end, m.words().size(),
-                      m.constants().size(), port_base);
+  text += fmt::format("state words {} of {} for {} names, constants {}\n", s.state_end, first_reserved,
+                      m.words().size(), m.constants().size());
   for (const Region& region : m.regions()) {
     text += fmt::format("clocks {:10} {:4}  ({} instructions)\n", region.label, s.clocks.at(region.label),
                         region.lines.size());

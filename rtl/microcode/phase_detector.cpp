@@ -7,7 +7,7 @@
 //
 // in       baseband_.. Q1.27; demodulation_cos, _sin Q2.22
 // out      amplitude Q2.32, K = prod sqrt(1 + 4^-i); phase_error Q0.32 turns; secondary Q1.27
-// clocks   94 a tick
+// clocks   89 a tick
 // rounding CORDIC shifts floor, the angle wraps; secondary half up, clipped (secondary_saturated)
 // source   J. E. Volder, The CORDIC trigonometric computing technique, 1959
 #include <cmath>
@@ -65,7 +65,7 @@ void rotate(Assembler& m) {
       .saturate(config::baseband)
       .raise(config::status_secondary_saturated)
       .send_to(config::tap_secondary_in_phase);
-  m.move(m.nowhere(), exact[1])
+  m.move(m.word("secondary_quadrature"), exact[1])
       .round(shift)
       .saturate(config::baseband)
       .raise(config::status_secondary_saturated)

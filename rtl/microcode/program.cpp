@@ -19,8 +19,10 @@ void sample(Assembler& m) {
   Region& region = m.region("sample");
   region.background = false;
   region.last = Control::give_back;
+  modulator_carrier(m);
   nco(m);
   demodulator(m);
+  modulator_sample(m);
   cic_sample(m);
 }
 
@@ -31,10 +33,14 @@ void tick(Assembler& m) {
   region.jump_condition = Condition::negative;
   m.block("reference_phase_loop");
   m.move(m.word("increment"), m.word("pending"));
+  modulator_take_over(m);
   cic_tick(m);
   image_filter(m);
   phase_detector(m);
+  start_up(m);
   reference_phase_loop(m);
+  actuator_loops(m);
+  modulator_tick(m);
   frequency_tracker_tick(m);
   rate_filter_tick(m);
   m.block("output");
@@ -86,8 +92,8 @@ void telemetry(Assembler& m) {
   m.block("output");
   m.move(m.word("frequency"), Word{telemetry_frequency_address});
   m.move(m.word("rate"), Word{telemetry_rate_address});
-  m.clear(m.word("amplitude_word"));
-  m.clear(m.word("error_word"));
+  for (const char* name : {"amplitude_word", "error_word", "drive_word", "quadrature_word"})
+    m.clear(m.word(name));
   m.move(m.word("not_good"), gap_port).raise(config::status_frequency_invalid).then(Control::take);
 }
 
@@ -96,8 +102,8 @@ void telemetry(Assembler& m) {
 void record(Assembler& m) {
   m.region("record").in_order = true;
   m.block("output");
-  for (const char* name : {"frequency", "temperature", "derivative", "amplitude_word", "error_word", "bias",
-                           "rate", "compensated", "status"}) {
+  for (const char* name : {"frequency", "temperature", "derivative", "amplitude_word", "error_word",
+                           "drive_word", "quadrature_word", "bias", "rate", "compensated", "status"}) {
     m.move(m.nowhere(), m.word(name)).then(Control::emit);
   }
 }

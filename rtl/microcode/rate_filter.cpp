@@ -4,9 +4,9 @@
 //
 //   rate = (1 + z^-1 + ... + z^-24)^2 rate_tick
 //
-// in       secondary_in_phase Q1.27 times rate_gain Q11.13
+// in       secondary_in_phase Q1.27 or, closed loop, rebalance Q2.30, times rate_gain Q11.13
 // out      rate_tick Q11.26 of 625 deg/h a tick; rate Q20.16 deg/h an output
-// clocks   4 a tick, 5 an output
+// clocks   7 a tick, 5 an output
 // rounding rate_tick and rate half up, clipped (rate_saturated); sums wrap
 #include "rtl/microcode/blocks.hpp"
 
@@ -17,12 +17,17 @@ void rate_filter_tick(Assembler& m) {
   const Word tick = m.word("rate_tick");
   const Word first = m.word("rate_sum", 1);
   const Word second = m.word("rate_sum", 2);
-  const int fraction = config::baseband.fraction + config::registers[config::reg_rate_gain].format.fraction;
-  m.add(tick, m.zero(), m.product(m.word("secondary_in_phase"), m.reg(config::reg_rate_gain)))
-      .round(fraction - config::rate_tick.fraction)
-      .saturate(config::rate_tick)
-      .raise(config::status_rate_saturated)
-      .send_to(config::tap_rate_tick);
+  const auto take = [&](const char* source, config::Format format) -> Instruction& {
+    const int fraction = format.fraction + config::registers[config::reg_rate_gain].format.fraction;
+    return m.move(tick, m.product(m.word(source), m.reg(config::reg_rate_gain)))
+        .round(fraction - config::rate_tick.fraction)
+        .saturate(config::rate_tick)
+        .raise(config::status_rate_saturated)
+        .send_to(config::tap_rate_tick);
+  };
+  m.test(m.word("closed_loop"));
+  take("secondary_in_phase", config::baseband).if_not_negative();
+  take("rebalance", config::command).if_negative();
   m.add(first, first, tick).wrap(config::rate_accumulator);
   m.add(second, second, first).wrap(config::rate_accumulator);
 }

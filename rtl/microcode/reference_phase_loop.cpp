@@ -5,11 +5,9 @@
 //   increment = integral + kp e,  integral += ki e  (+ kf (e - e_last) while unlocked and far off), e =
 //   phase_error
 //
-// in       phase_error Q0.32 turns, amplitude Q2.32; gains kp, kf, ki
-// out      pending Q1.48 turns a sample: in force one tick later
-// clocks   42 a tick
-// rounding products half up to 2^-48; sums clip (loop_saturated)
-// source   F. M. Gardner, Phaselock Techniques, 3rd ed., ch. 2
+// in       phase_error Q0.32 turns, low: -1 below the amplitude threshold, else 0; gains kp, kf, ki
+// out      pending Q1.48 turns a sample: in force one tick later clocks   40 a tick rounding products
+// half up to 2^-48; sums clip (loop_saturated) source   F. M. Gardner, Phaselock Techniques, 3rd ed., ch. 2
 #include "rtl/microcode/blocks.hpp"
 
 namespace hemi::microcode {
@@ -42,8 +40,6 @@ void filter(Assembler& m) {
   m.move(steering, change).if_negative();
   m.compare(change, far);
   m.move(steering, change).if_not_negative();
-  m.subtract(m.word("low"), m.word("amplitude"), m.reg(config::reg_amplitude_threshold));
-  m.move(m.word("low"), m.word("low")).floor(word_bits);
   m.subtract(m.nowhere(), m.word("low"), m.word("locked")).set_negative();
   steer(m, integral, steering, config::reg_loop_frequency);
   m.test(m.word("low"));

@@ -19,7 +19,8 @@ Instruction idle_place(const char* block) {
   return nothing;
 }
 
-/// Orders one region's lines: at each clock the ready line with the longest way to the end.
+/// Orders one region's lines: at each clock the ready line with the longest way to the end; in the background
+/// lines that stand first in the text count for more, which shortens the lives of words.
 class ListScheduler {
  public:
   /// `late_words` and `early_words`: written and read by samples.
@@ -27,6 +28,7 @@ class ListScheduler {
                 const std::set<int>& early_words)
       : lines_(region.lines.begin(), region.lines.end()),
         nowhere_(nowhere),
+        in_text_order_(region.background),
         placed_(lines_.size(), -1),
         height_(lines_.size(), 0),
         earliest_(lines_.size(), 0) {
@@ -54,7 +56,7 @@ class ListScheduler {
       std::optional<std::size_t> best;
       for (std::size_t i = 0; i < lines_.size(); ++i) {
         if (follows_exactly(i) || !ready(i, clock)) continue;
-        if (!best || height_[i] > height_[*best]) best = i;
+        if (!best || weight(i) > weight(*best)) best = i;
       }
       if (!best) continue;
       left -= place(*best, clock);
@@ -65,6 +67,7 @@ class ListScheduler {
  private:
   static constexpr int urgent = 1000;
 
+  int weight(std::size_t i) const { return 2 * height_[i] - (in_text_order_ ? static_cast<int>(i) : 0); }
   bool exact(std::size_t i) const { return result_latency(lines_[i]) > 0; }
   bool follows_exactly(std::size_t i) const { return i > 0 && exact(i - 1); }
 
@@ -95,6 +98,7 @@ class ListScheduler {
 
   std::vector<Instruction> lines_;
   Word nowhere_;
+  bool in_text_order_;
   std::vector<int> placed_;
   std::vector<int> height_;
   std::vector<int> earliest_;
@@ -118,6 +122,7 @@ class Placer {
         if (writes(i, nowhere_)) sample_writes_.insert(i.dst.address);
       }
     }
+    sample_reads_.insert(dac_quadrature_port.address);  // goes out with the sample's other words
   }
 
   Placed place(const Region& region) const {

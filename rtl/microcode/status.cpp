@@ -2,10 +2,11 @@
 //
 // status: live flags of the output interval, sticky ones since the first lock; parity of the registers.
 //
-//   sticky |= live once an output was locked and its frequency valid;  status = sticky 2^16 + live
+//   sticky |= live once an output was locked, all loops closed and its frequency valid;  status = sticky
+//   2^24 + live
 //
 // in       flags as the other blocks raise them; out: status, once an output
-// clocks   35 an output for the parity, 14 for the flags
+// clocks   59 an output for the parity, 16 for the flags
 // The machine has sums and exclusive or: a | b = (a + b) - (a & b), a & b = ((a + b) - (a ^ b)) / 2.
 #include "rtl/microcode/blocks.hpp"
 
@@ -28,8 +29,9 @@ void parity(Assembler& m) {
 
 void status(Assembler& m) {
   m.block("status");
-  static_assert(config::status_unlocked == 0 && config::status_frequency_invalid == config::status_bits - 1,
-                "lowest and highest bit");
+  static_assert(config::status_unlocked == 0 && config::status_starting == config::status_bits - 2 &&
+                    config::status_frequency_invalid == config::status_bits - 1,
+                "lowest and the two highest bits");
   const Word live = m.word("live");
   const Word half = m.word("live_half");
   const Word lowest = m.word("live_lowest");
@@ -42,7 +44,7 @@ void status(Assembler& m) {
   m.move(half, live).floor(1);
   m.subtract(lowest, live, half);
   m.subtract(lowest, lowest, half);
-  m.move(highest, live).floor(config::status_bits - 1);
+  m.move(highest, live).floor(config::status_bits - 2);
   m.add(highest, highest, lowest);
   m.compare(highest, m.constant(1));
   m.move(armed, m.constant(1)).if_negative();
@@ -51,7 +53,10 @@ void status(Assembler& m) {
   m.subtract(both, sum, both);
   m.compare(armed, m.constant(1));
   m.subtract(sticky, sum, both).floor(1).if_not_negative();
-  m.add(m.word("status"), live, m.product(sticky, m.constant(std::int64_t{1} << config::status_bits)))
+  // 2^23 is the widest factor, and only with a minus.
+  m.add(sum, sticky, sticky);
+  m.subtract(m.word("status"), live,
+             m.product(sum, m.constant(-(std::int64_t{1} << (config::status_shift - 1)))))
       .send_to(config::tap_status);
 }
 

@@ -60,11 +60,15 @@ std::string add_codes() {
   add_code(text, "ControlTake", 3, Control::take);
   add_code(text, "ControlLoadShift", 3, Control::load_shift);
   add_code(text, "VariableShift", 6, variable_shift);
-  add_code(text, "ProductPort", address_bits, product_port.address);
-  add_code(text, "SampleXPort", address_bits, sample_x_port.address);
-  add_code(text, "SampleYPort", address_bits, sample_y_port.address);
-  add_code(text, "GapPort", address_bits, gap_port.address);
-  add_code(text, "LivePort", address_bits, live_port.address);
+  add_code(text, "ProductPort", operand_b_bits, product_port.address);
+  add_code(text, "LookupPort", operand_b_bits, lookup_port.address);
+  add_code(text, "SampleXPort", operand_b_bits, sample_x_port.address);
+  add_code(text, "SampleYPort", operand_b_bits, sample_y_port.address);
+  add_code(text, "GapPort", operand_b_bits, gap_port.address);
+  add_code(text, "LivePort", operand_b_bits, live_port.address);
+  add_code(text, "DacDrivePort", address_bits, dac_drive_port.address);
+  add_code(text, "DacRebalancePort", address_bits, dac_rebalance_port.address);
+  add_code(text, "DacQuadraturePort", address_bits, dac_quadrature_port.address);
   return text;
 }
 
@@ -80,7 +84,7 @@ std::string add_checked_codes() {
 }  // namespace
 
 int program_bits(const Schedule& s) {
-  int bits = address_bits + 1;
+  int bits = operand_b_bits + 1;
   while ((std::size_t{1} << bits) < s.program.size()) ++bits;
   return bits;
 }
@@ -89,12 +93,13 @@ std::string package(const Assembler& m, const Schedule& s) {
   std::string text = header;
   text += fmt::format("/// Constants of the {} instrument.\npackage hemi_pkg;\n", m.instrument().name);
   add_parameter(text, "AdcBits", m.instrument().adc_bits);
+  add_parameter(text, "DacBits", config::dac.width);
+  add_parameter(text, "ResidualBits", config::dac_sum.fraction - config::dac.fraction);
   add_parameter(text, "Decimation", m.instrument().decimation);
   add_parameter(text, "WordBits", word_bits);
   add_parameter(text, "AddressBits", address_bits);
   add_parameter(text, "StateWords", state_words);
   add_parameter(text, "FirstStateAddress", first_state_address);
-  add_parameter(text, "FirstConstant", m.first_constant());
   add_parameter(text, "RecordWords", config::record_words);
   add_parameter(text, "TapBits", 6);
   add_parameter(text, "StatusBits", config::status_bits);
@@ -151,32 +156,40 @@ std::string mode_table(const Assembler& m) {
   text +=
       "/// How a sum becomes a word: which bits of it are magnitude, and whether it clips or wraps.\n"
       "module hemi_modes (\n"
-      "    input  logic [ 3:0] mode_i,     // field of the instruction\n"
+      "    input  logic [ 4:0] mode_i,     // field of the instruction\n"
       "    output logic [53:0] keep_o,     // ones below the sign bit of the word\n"
-      "    output logic        saturate_o  // clip instead of wrapping\n"
+      "    output logic        saturate_o, // clip instead of wrapping\n"
+      "    output logic        residual_o  // 0 where the instruction before clipped\n"
       ");\n"
       "  always_comb begin\n"
       "    unique case (mode_i)\n";
   for (std::size_t code = 0; code < m.modes().size(); ++code) {
     const Mode mode = m.modes()[code];
     const std::uint64_t keep = (std::uint64_t{1} << (mode.width - 1)) - 1;
-    text +=
-        fmt::format("      {}4'd{}: begin\n        keep_o = {};\n        saturate_o = 1'b{};\n      end\n",
-                    code == 0 ? "default, " : "", code, word_literal(static_cast<std::int64_t>(keep)),
-                    mode.saturate ? 1 : 0);
+    text += fmt::format(
+        "      {}: begin\n        keep_o = {};\n        saturate_o = 1'b{};\n"
+        "        residual_o = 1'b{};\n      end\n",
+        code == 0 ? "default" : fmt::format("5'd{}", code), word_literal(static_cast<std::int64_t>(keep)),
+        mode.saturate ? 1 : 0, mode.residual ? 1 : 0);
   }
-  std::string fixed = text + "    endcase\n  end\nendmodule\n";
-  const std::string odd = "default, 4'd0";
-  fixed.replace(fixed.find(odd), odd.size(), "default");
-  return fixed;
+  return text + "    endcase\n  end\nendmodule\n";
 }
 
-std::string constant_memory(const Assembler& m) {
+std::string constant_table(const Assembler& m) {
   std::string text = header;
+  text +=
+      "/// The program's constants as logic: block RAM is scarcer than cells on small devices.\n"
+      "module hemi_constants (\n"
+      "    input  logic [ 7:0] address_i,  // of operand b, without its highest bit\n"
+      "    output logic [31:0] constant_o  // signed\n"
+      ");\n"
+      "  always_comb begin\n"
+      "    unique case (address_i)\n";
   for (const auto& [value, word] : m.constants()) {
-    text += fmt::format("memory_q[{}] = {};  // {}\n", word.address, word_literal(value), value);
+    text += fmt::format("      8'd{}: constant_o = 32'h{:08x};  // {}\n", word.address - port_base,
+                        static_cast<std::uint32_t>(value), value);
   }
-  return text;
+  return text + "      default: constant_o = 32'h0;\n    endcase\n  end\nendmodule\n";
 }
 
 std::string sine_memory() {

@@ -16,7 +16,7 @@ int program_bits(const Schedule& s);
 std::string package(const Assembler& m, const Schedule& s);         ///< hemi_pkg.sv
 std::string program_memory(const Assembler& m, const Schedule& s);  ///< hemi_program.sv
 std::string mode_table(const Assembler& m);                         ///< hemi_modes.sv
-std::string constant_memory(const Assembler& m);                    ///< hemi_constants.svh
+std::string constant_table(const Assembler& m);                     ///< hemi_constants.sv
 std::string sine_memory();                                          ///< hemi_sine_rom.sv
 
 }  // namespace hemi::microcode

@@ -143,16 +143,16 @@ TEST(Status, StickyFromTheFirstLockOn) {
   status.raise(config::status_adc_overload, true);
   EXPECT_EQ(status.close(), (1 << config::status_unlocked) | (1 << config::status_adc_overload));
   status.raise(config::status_sample_gap, true);
-  EXPECT_EQ(status.close(), (1 << config::status_sample_gap) * 0x10001LL);
-  EXPECT_EQ(status.close(), (1LL << config::status_sample_gap) << 16);
+  EXPECT_EQ(status.close(), (1 << config::status_sample_gap) * 0x1000001LL);
+  EXPECT_EQ(status.close(), (1LL << config::status_sample_gap) << config::status_shift);
   status.raise(config::status_unlocked, true);
-  EXPECT_EQ(status.close(), ((1LL << config::status_sample_gap | 1) << 16) | 1);
+  EXPECT_EQ(status.close(), ((1LL << config::status_sample_gap | 1) << config::status_shift) | 1);
 }
 
 TEST(Registers, ParityCoversEveryBit) {
   std::int64_t image[config::register_count] = {};
   for (int i = 0; i < config::reg_parity; ++i) {
-    image[i] = (i * 7919 + 13) % (1 << (std::min(config::registers[i].format.width, 20) - 1));
+    image[i] = (i * 7919LL + 13) % (1LL << (std::min(config::registers[i].format.width, 20) - 1));
     image[config::reg_parity] ^= image[i];
   }
   Registers r;

@@ -5,15 +5,16 @@
 #include "tb/hls_engine.hpp"
 #include "tb/scoreboard.hpp"
 #include "tb/verilator_engine.hpp"
+#include "tests/rtl/bits.hpp"
+#include "tests/rtl/stand_in_plant.hpp"
 #include "tests/tb/signals.hpp"
 
 namespace {
 
 using namespace hemi;
-
-int decimation(bool wide) {
-  return wide ? config::Wide::decimation : config::Reference::decimation;
-}
+using tests::bits_seen;
+using tests::decimation;
+using tests::expect_bits;
 
 /// Feeds both engines in chunks of odd sizes; fails at the first word that differs.
 void expect_equal(bool wide, tb::Engine& rtl, tb::Engine& hls, const std::vector<tb::SamplePair>& pairs,
@@ -57,6 +58,18 @@ TEST_P(RtlEngine, EqualsHlsOverEveryHostileStretch) {
                          config::status_derivative_invalid}) {
     EXPECT_TRUE((seen >> bit) & 1) << config::status_names[bit];
   }
+}
+
+TEST_P(RtlEngine, EqualsHlsWithTheActuatorLoopsOnTheHostileCapture) {
+  const auto rtl = tb::make_rtl_engine(wide());
+  const auto hls = tb::make_hls_engine(wide());
+  const auto values = tests::busy_control(tests::busy_registers(wide(), 4410.0));
+  for (tb::Engine* engine : {rtl.get(), hls.get()}) engine->reset(values);
+  std::vector<tb::Record> records;
+  expect_equal(wide(), *rtl, *hls, tests::hostile_capture(wide(), wide() ? 30000 : 12000, 19), records);
+  expect_bits(bits_seen(records), {config::status_drive_saturated, config::status_quadrature_saturated,
+                                   config::status_rebalance_saturated, config::status_searching,
+                                   config::status_starting, config::status_holdover});
 }
 
 TEST_P(RtlEngine, DoesNotDependOnGapsBackPressureOrClocks) {
@@ -119,10 +132,16 @@ TEST_P(RtlEngine, RandomRegisters) {
     for (int i = 0; i < config::register_count; ++i) {
       if (i == config::reg_log2_block || i == config::reg_slope_shift || i == config::reg_parity) continue;
       if (round % 3 == 0 && i <= config::reg_lock_count) continue;  // a third of the rounds can lock
+      if (round % 2 == 0 && i == config::reg_control) continue;     // the other half may be closed loop
       const config::Format format = config::registers[i].format;
       const double limit = std::ldexp(1.0, format.width - 1 - format.fraction);
       values[i] = std::uniform_real_distribution<double>(-0.999 * limit, 0.999 * limit)(generator);
     }
+    for (const auto i : {config::reg_search_span, config::reg_drive_limit, config::reg_quadrature_limit,
+                         config::reg_rebalance_limit}) {
+      values[i] = std::abs(values[i]);  // the contract has no others
+    }
+    if (round % 3 == 0) tests::set_quick_start_up(values, generator);
     values[config::reg_log2_block] = 0;
     values[config::reg_slope_shift] = round;
     const auto rtl = tb::make_rtl_engine(wide(), {.checks = true});

@@ -55,7 +55,7 @@ int main() {
   tests::append(pairs, tests::Stretch::overdriven, 3000, false, 4425.0, 0.5, generator);
   tests::append(pairs, tests::Stretch::tone, 4000, false, 4475.0, 3.0, generator);
   pairs[9000].gap = true;
-  auto values = tests::busy_registers(false, 4420.0);
+  auto values = tests::busy_control(tests::busy_registers(false, 4420.0));
   values[config::reg_log2_block] = 0;
   values[config::reg_lock_count] = 60;
   values[config::reg_slope_shift] = 3;

@@ -42,6 +42,34 @@ inline tb::RegisterValues busy_registers(bool wide, double start_hz) {
   return v;
 }
 
+/// The same in force-to-rebalance mode, with limits that are reached and a start-up that is short. The
+/// capture does not answer to the actuators, so every loop runs into its limit, holds, and starts again.
+inline tb::RegisterValues busy_control(tb::RegisterValues v) {
+  const double step = 0.01 * v[config::reg_nco_start];
+  v[config::reg_control] = 1;
+  v[config::reg_search_amplitude] = 0.05;
+  v[config::reg_closing_amplitude] = 0.2;
+  v[config::reg_search_ticks] = 8;
+  v[config::reg_search_step] = step;
+  v[config::reg_search_span] = 2 * step;
+  v[config::reg_holdover_ticks] = 25;
+  v[config::reg_modulation_phase] = 0.137;
+  v[config::reg_modulation_delay] = 2.513;
+  v[config::reg_amplitude_setpoint] = 0.4;
+  v[config::reg_amplitude_proportional] = 3.7;
+  v[config::reg_amplitude_integral] = 0.0041;
+  v[config::reg_drive_start] = 0.021;
+  v[config::reg_drive_limit] = 0.93;
+  v[config::reg_quadrature_proportional] = 1.9;
+  v[config::reg_quadrature_integral] = 0.0123;
+  v[config::reg_quadrature_start] = -0.057;
+  v[config::reg_quadrature_limit] = 0.71;
+  v[config::reg_rebalance_proportional] = 2.3;
+  v[config::reg_rebalance_integral] = 0.0567;
+  v[config::reg_rebalance_limit] = 1.27;
+  return v;
+}
+
 /// What a stretch of a capture is made of.
 enum class Stretch { tone, silence, overdriven, random_rails, full_scale_noise };
 

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "tb/golden_engine.hpp"
+#include "tb/hls_engine.hpp"
 #include "tb/systemc_engine.hpp"
+#include "tests/rtl/stand_in_plant.hpp"
 #include "tests/tb/signals.hpp"
 
 namespace {
@@ -39,6 +41,64 @@ TEST_P(SystemC, EqualsGoldenUnderGapsAndBackPressureAndAfterAReset) {
     }
     EXPECT_EQ(a, b);
   }
+}
+
+/// The same loop without SystemC.
+void close_with_hls(tb::Engine& hls, tests::StandInPlant& plant, std::size_t samples,
+                    std::vector<tb::Record>& records) {
+  for (std::size_t i = 0; i < samples; ++i) plant.act(hls.step(plant.sample(), records));
+}
+
+TEST_P(SystemC, ClosesAPlantAroundBothCoresUnderGapsAndBackPressure) {
+  const bool wide = GetParam();
+  const auto hls = tb::make_hls_engine(wide);
+  const auto values = tests::stand_in_registers(wide);
+  tb::RtlOptions options;
+  options.input_gap_probability = 0.3;
+  options.back_pressure_probability = 0.5;
+  const auto systemc = tb::make_systemc_engine(wide, options);
+  for (tb::Engine* engine : {static_cast<tb::Engine*>(systemc.get()), hls.get()}) engine->reset(values);
+  tests::StandInPlant plant(wide, 5), same_plant(wide, 5);
+  std::vector<tb::Record> a, b;
+  // Long enough for search, lock and the rise of the amplitude; a second call goes on where the first ended.
+  const std::size_t samples = wide ? 35001 : 15001;
+  for (int call = 0; call < 2; ++call) {
+    systemc->closed_loop(plant, samples, a);
+    close_with_hls(*hls, same_plant, samples, b);
+    ASSERT_FALSE(a.empty());
+    ASSERT_EQ(a, b);
+  }
+  const auto run = static_cast<std::uint64_t>(a.back().words[config::word_status]);
+  EXPECT_FALSE((run >> config::status_starting) & 1) << "the plant was to be in operation";
+  // Sample by sample, and recorded samples in between.
+  for (int i = 0; i < 2000; ++i) {
+    const tb::SamplePair pair = plant.sample();
+    const tb::DacWords words = systemc->step(pair, a);
+    ASSERT_EQ(words, hls->step(pair, b));
+    plant.act(words);
+    if (i == 1000) {
+      const auto pairs = tests::hostile_capture(wide, 100, 6);
+      systemc->samples(pairs, a);
+      hls->samples(pairs, b);
+    }
+  }
+  systemc->drain(a);
+  EXPECT_EQ(a, b);
+}
+
+TEST_P(SystemC, EachSampleOfAPlantIsAnsweredOnce) {
+  const bool wide = GetParam();
+  const auto systemc = tb::make_systemc_engine(wide, {});
+  systemc->reset(tests::stand_in_registers(wide));
+  struct Stubborn : tb::PlantPort {
+    int acted = 0;
+    tb::SamplePair sample() override { return {acted % 100, -acted % 77, false}; }
+    void act(const tb::DacWords&) override { ++acted; }
+  } plant;
+  std::vector<tb::Record> records;
+  systemc->closed_loop(plant, 5000, records);
+  EXPECT_EQ(plant.acted, 5000);
+  EXPECT_EQ(records.size(), wide ? 4u : 10u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, SystemC, testing::Bool(),

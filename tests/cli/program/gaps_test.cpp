@@ -15,7 +15,7 @@ bool live(double status, config::StatusBit bit) {
   return ((static_cast<std::uint64_t>(status) >> bit) & 1) != 0;
 }
 bool sticky(double status, config::StatusBit bit) {
-  return ((static_cast<std::uint64_t>(status) >> (bit + 16)) & 1) != 0;
+  return ((static_cast<std::uint64_t>(status) >> (bit + config::status_shift)) & 1) != 0;
 }
 
 TEST_F(Gaps, InACapture) {

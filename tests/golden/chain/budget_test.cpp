@@ -25,11 +25,23 @@ struct Pair {
   std::vector<ChainRecord> quantised;
 };
 
+// rebalance_gain: 0 in open loop, else that of a rebalance loop without integral.
 Pair run_pair(const InstrumentParameters& instrument, double frequency_hz, int seconds, double sigma,
-              unsigned seed) {
+              unsigned seed, double rebalance_gain = 0.0) {
   Pair pair{{instrument, 0.8, 0.3, 0.6}, reference_values(instrument, frequency_hz), {}, {}};
   pair.values[reg_demodulation_cos] = 0.75;
   pair.values[reg_demodulation_sin] = 0.625;
+  if (rebalance_gain != 0.0) {
+    pair.values[reg_control] = 1.0;
+    pair.values[reg_demodulation_cos] = -0.75;  // a positive command
+    pair.values[reg_demodulation_sin] = -0.625;
+    pair.values[reg_rate_gain] = 512.0;  // the steps of the command are to show, not those of the rate word
+    pair.values[reg_search_amplitude] = pair.values[reg_closing_amplitude] = 0.125;
+    pair.values[reg_search_ticks] = 1e6;
+    pair.values[reg_holdover_ticks] = 1e6;
+    pair.values[reg_rebalance_limit] = 1.5;
+    pair.values[reg_rebalance_proportional] = round_to(rebalance_gain, 13);
+  }
   Chain ideal(Precision::ideal, instrument, pair.values);
   Chain quantised(Precision::quantised, instrument, pair.values);
   Tone x(frequency_hz, instrument.adc_rate_hz, pair.point.primary_amplitude, 0.1);
@@ -101,6 +113,29 @@ TEST_P(Quantisation, StaysWithinTheBudgetOfTheFormats) {
     EXPECT_LE(word.worst, allowed.worst) << word.name;
     EXPECT_LE(rms, allowed.rms * (1.0 + 2.0 / std::sqrt(lines))) << word.name;
     EXPECT_GT(rms, 0.0) << word.name;
+  }
+}
+
+TEST_P(Quantisation, RateOfTheRebalanceCommandStaysWithinItsBudget) {
+  constexpr int kFrequencies = 4;
+  for (const double gain : {0.01, 8.0}) {  // the command's floor counts; it does not
+    Measured rate{word_rate, "rate", &ChainBudget::rate_dph};
+    Budget allowed{};
+    for (int i = 0; i < kFrequencies; ++i) {
+      const Pair pair = run_pair(instrument(), 4365.37 + 30.00713 * i, 4, kPickoffNoise,
+                                 200U + static_cast<unsigned>(i), gain);
+      allowed = quantisation_budget(pair.point, pair.values).rate_dph;
+      EXPECT_GT(column(pair.ideal, word_rate, kSettled).minCoeff(), 0.0);
+      rate.add(pair);
+    }
+    const double rms = std::sqrt(rate.sum_of_squares / rate.count);
+    fmt::print("{} bit, rebalance gain {}: rate worst {:.2e} (budget {:.2e}), rms {:.2e} (budget {:.2e})\n",
+               instrument().adc_bits, gain, rate.worst, allowed.worst, rms, allowed.rms);
+    // Lines of the nco's table as above, of fewer frequencies.
+    const double lines = kFrequencies * 2048.0 * 400.0 / instrument().adc_rate_hz;
+    EXPECT_LE(rate.worst, allowed.worst);
+    EXPECT_LE(rms, allowed.rms * (1.0 + 2.0 / std::sqrt(lines)));
+    EXPECT_GT(rms, 0.0);
   }
 }
 

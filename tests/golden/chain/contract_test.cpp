@@ -5,28 +5,18 @@
 
 #include <random>
 
-#include "tests/golden/chain/support.hpp"
-#include "tests/golden/chain/whole_numbers.hpp"
+#include "tests/golden/chain/contract.hpp"
 
 namespace hemi::golden::testing {
 namespace {
 
 using namespace config;
 
-class Recorder : public TapListener {
- public:
-  void tap(TapIndex index, double value) override { taps_.emplace_back(index, value); }
-  std::vector<std::pair<TapIndex, double>> taps_;
-};
-
 struct Stimulus {
   const char* name;
   double (*value)(std::int64_t n, std::mt19937_64& random);  // fractions of full scale, clipped at the rails
 };
 
-double uniform(std::mt19937_64& random) {
-  return std::uniform_real_distribution<double>(-1.0, 1.0)(random);
-}
 double tone(double amplitude, std::int64_t n) {
   return amplitude * std::cos(0.278 * static_cast<double>(n));
 }
@@ -44,46 +34,6 @@ const std::array<Stimulus, 7> kStimuli = {{
        return n / 9000 % 2 == 0 ? tone(0.9, n) : 1e-5 * uniform(random);
      }},
 }};
-
-// Words of either end, of the middle and in between; shifts and block lengths in their ranges.
-RegisterValues random_registers(const InstrumentParameters& instrument, std::mt19937_64& random, int kind) {
-  RegisterValues values = reference_values(instrument, 0.04424778761 * instrument.adc_rate_hz);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const Format& format = registers[i].format;
-    if (kind == 0 && i <= reg_lock_count) continue;  // the loop as it is meant to be
-    switch (random() % 4) {
-      case 0:
-        values[i] = lowest_of(format);
-        break;
-      case 1:
-        values[i] = highest_of(format);
-        break;
-      default:
-        values[i] = floor_to(uniform(random) * highest_of(format), format.fraction);
-    }
-  }
-  if (kind == 0) values[reg_lock_count] = 60.0;
-  values[reg_log2_block] = static_cast<double>(random() % 3);
-  values[reg_slope_shift] = static_cast<double>(random() % 51);
-  if (random() % 2 == 0) values[reg_frequency_reference] = 4424.0;
-  if (random() % 2 == 0) values[reg_amplitude_threshold] = round_to(0.001, cordic.fraction);
-  return values;
-}
-
-void expect_equal(const Recorder& recorder, const WholeNumbers& expected, const std::string& what,
-                  std::uint64_t& status_seen) {
-  ASSERT_EQ(recorder.taps_.size(), expected.taps.size()) << what;
-  for (std::size_t i = 0; i < expected.taps.size(); ++i) {
-    const auto [index, value] = recorder.taps_[i];
-    ASSERT_EQ(std::ldexp(value, taps[index].format.fraction), static_cast<double>(expected.taps[i]))
-        << what << ": " << taps[index].block << "." << taps[index].name << ", tap " << i;
-    ASSERT_FALSE(value == 0.0 && std::signbit(value)) << what << ": -0 at " << taps[index].name;
-    const double limit = std::ldexp(1.0, taps[index].format.width - 1);
-    ASSERT_TRUE(-limit <= static_cast<double>(expected.taps[i]) &&
-                static_cast<double>(expected.taps[i]) < limit);
-    if (index == tap_status) status_seen |= static_cast<std::uint64_t>(value) & 0xffff;
-  }
-}
 
 void run(const InstrumentParameters& instrument, const Stimulus& x, const Stimulus& y,
          const RegisterValues& values, std::mt19937_64& random, const std::string& what,
@@ -117,6 +67,7 @@ void run(const InstrumentParameters& instrument, const Stimulus& x, const Stimul
                     gap[static_cast<std::size_t>(n)] != 0);
   }
   expect_equal(recorder, expected, what, status_seen);
+  if (!::testing::Test::HasFatalFailure()) expect_sums(recorder, records, what);
 }
 
 TEST(Contract, EveryTapEqualsWholeNumbers) {

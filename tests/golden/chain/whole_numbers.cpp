@@ -37,6 +37,12 @@ WholeNumbers::WholeNumbers(const InstrumentParameters& instrument, const Registe
         std::llround(std::ldexp(std::atan(std::ldexp(1.0, -i)) / (2.0 * std::numbers::pi), 32)));
   }
   increment_ = pending_ = integral_ = r_[reg_nco_start];
+  loops_ = {{{reg_amplitude_proportional, reg_amplitude_integral, reg_drive_limit, r_[reg_drive_start],
+              status_drive_saturated, "amplitude"},
+             {reg_quadrature_proportional, reg_quadrature_integral, reg_quadrature_limit,
+              r_[reg_quadrature_start], status_quadrature_saturated, "quadrature"},
+             {reg_rebalance_proportional, reg_rebalance_integral, reg_rebalance_limit, 0,
+              status_rebalance_saturated, "rebalance"}}};
 }
 
 Word WholeNumbers::saturate(Word value, const Format& format, StatusBit bit) {
@@ -55,15 +61,19 @@ Word WholeNumbers::sine(Word angle) const {
   return quadrant < 2 ? q : -q;
 }
 
-void WholeNumbers::sample(Word x, Word y, bool gap) {
-  const Word angle = (phase_ >> 24) & 0xffffff;
-  const Word s = sine(angle);
-  const Word c = sine((angle + (1 << 22)) & 0xffffff);
+std::array<Word, 3> WholeNumbers::sample(Word x, Word y, bool gap) {
+  const Word s = nco_sine(phase_);
+  const Word c = nco_sine(phase_ + (Word{1} << 46));
   const int drop = instrument_.adc_bits - 1 + 19 - 23;
   const std::array<Word, 4> products = {round(x * c, drop), -round(x * s, drop), round(y * c, drop),
                                         -round(y * s, drop)};
   taps.insert(taps.end(), {phase_, c, s});
   taps.insert(taps.end(), products.begin(), products.end());
+  const Word carrier = nco_sine(wrap(phase_ + offset_now_ * 65536, phase));
+  const Word drive_word = dac_word(round(-(drive_now_ * carrier), 19), drive_error_);
+  const Word rebalance_word = dac_word(round(-(rebalance_now_ * carrier), 19), rebalance_error_);
+  const std::array<Word, 3> words = {drive_word, rebalance_word, quadrature_now_};
+  taps.insert(taps.end(), {carrier, drive_word, rebalance_word});
   for (std::size_t channel = 0; channel < 4; ++channel) {
     Word carry = products[channel];
     for (Word& integrator : combs_[channel].s) carry = integrator = wrap(integrator + carry, cic_bits_);
@@ -72,12 +82,13 @@ void WholeNumbers::sample(Word x, Word y, bool gap) {
   raise(status_adc_overload, x == -rail || x == rail - 1 || y == -rail || y == rail - 1);
   raise(status_sample_gap, gap);
   phase_ = wrap(phase_ + increment_, phase);
-  if (++samples_ < instrument_.decimation) return;
+  if (++samples_ < instrument_.decimation) return words;
   samples_ = 0;
   tick();
-  if (++ticks_ < ticks_per_output) return;
+  if (++ticks_ < ticks_per_output) return words;
   ticks_ = 0;
   output();
+  return words;
 }
 
 std::array<Word, 2> WholeNumbers::detect(Word i, Word q) {
@@ -145,6 +156,10 @@ Word WholeNumbers::track(Word phase_error) {
 
 void WholeNumbers::tick() {
   increment_ = pending_;
+  drive_now_ = drive_;
+  rebalance_now_ = loops_[2].command;
+  offset_now_ = offset_;
+  quadrature_now_ = dac_quadrature_;
   std::array<Word, 4> cic{};
   std::array<Word, 4> baseband_words{};
   for (std::size_t channel = 0; channel < 4; ++channel) {
@@ -168,15 +183,22 @@ void WholeNumbers::tick() {
   const auto secondary = [&](Word v) { return saturate(round(v, 22), baseband, status_secondary_saturated); };
   const Word in_phase = secondary(baseband_words[2] * c + baseband_words[3] * s);
   const Word quadrature = secondary(baseband_words[3] * c - baseband_words[2] * s);
+  start_up(amplitude);
   loop(amplitude, phase_error);
+  actuate(amplitude, in_phase, quadrature);
+  modulate();
   const Word p = track(phase_error);
-  const Word rate_word = saturate(round(in_phase * r_[reg_rate_gain], 14), rate_tick, status_rate_saturated);
+  const bool closed_loop = (r_[reg_control] & 1) != 0;
+  const Word source = closed_loop ? loops_[2].command : in_phase;
+  const Word rate_word =
+      saturate(round(source * r_[reg_rate_gain], closed_loop ? 17 : 14), rate_tick, status_rate_saturated);
   r1_ = wrap(r1_ + rate_word, rate_accumulator);
   r2_ = wrap(r2_ + r1_, rate_accumulator);
   taps.insert(taps.end(), cic.begin(), cic.end());
   taps.insert(taps.end(), baseband_words.begin(), baseband_words.end());
-  taps.insert(taps.end(),
-              {amplitude, phase_error, in_phase, quadrature, integral_, pending_, counter_, p, rate_word});
+  taps.insert(taps.end(), {amplitude, phase_error, in_phase, quadrature, state_, integral_, pending_,
+                           counter_, loops_[0].sum, drive_, loops_[1].sum, loops_[1].command, loops_[2].sum,
+                           loops_[2].command, offset_, dac_quadrature_, p, rate_word});
 }
 
 void WholeNumbers::output() {
@@ -247,10 +269,11 @@ void WholeNumbers::finish(Word frequency_word, Word rate_word, bool good) {
   std::uint64_t parity = 0;
   for (const Word word : r_) parity ^= static_cast<std::uint64_t>(word);
   raise(status_parity_error, (parity << 10) != 0);
-  if ((live_ & 1) == 0 && (live_ >> status_frequency_invalid & 1) == 0) armed_ = true;
+  if (((live_ >> status_unlocked | live_ >> status_starting | live_ >> status_frequency_invalid) & 1) == 0)
+    armed_ = true;
   if (armed_) sticky_ |= live_;
   taps.insert(taps.end(), {frequency_word, rate_word, o, t, slope_sum_, derivative_, bias_word, compensated,
-                           sticky_ * 65536 + live_});
+                           (sticky_ << 24) + live_});
   live_ = 0;
 }
 

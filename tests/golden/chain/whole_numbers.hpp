@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "golden/chain/chain.hpp"
@@ -17,10 +19,11 @@ class WholeNumbers {
   using Word = std::int64_t;
 
   WholeNumbers(const InstrumentParameters& instrument, const RegisterValues& values);
-  void sample(Word x, Word y, bool gap);
+  std::array<Word, 3> sample(Word x, Word y, bool gap);  ///< raw DAC words: drive, rebalance, quadrature
   void telemetry(Word frequency, Word rate, bool valid);
 
-  std::vector<Word> taps;  ///< raw words in the order in which Chain emits them
+  std::vector<Word> taps;          ///< raw words in the order in which Chain emits them
+  std::set<std::string> branches;  ///< of start_up and the actuator loops, as far as taken
 
  private:
   struct Comb {
@@ -29,13 +32,30 @@ class WholeNumbers {
     std::array<Word, 5> u{};
   };
 
+  struct Controller {
+    config::RegisterIndex proportional, integral, limit;
+    Word start;
+    config::StatusBit saturated;
+    const char* name;
+    Word sum = 0, command = 0;
+  };
+  enum Mode { off, hold, proportional, closed };
+
   void tick();
+  void start_up(Word amplitude);
+  void search();
+  void restart();
+  void actuate(Word amplitude, Word in_phase, Word quadrature);
+  void control(Controller& controller, Mode mode, Word error);
+  void modulate();
+  static Word dac_word(Word value, Word& error);
   std::array<Word, 2> detect(Word i, Word q);
   void loop(Word amplitude, Word phase_error);
   Word track(Word phase_error);
   void output();
   void finish(Word frequency, Word rate, bool good);
   Word sine(Word angle) const;
+  Word nco_sine(Word turns) const { return sine((turns >> 24) & 0xffffff); }
   Word saturate(Word value, const config::Format& format, config::StatusBit bit);
   void raise(config::StatusBit bit, bool condition) {
     if (condition) live_ |= Word{1} << bit;
@@ -48,6 +68,12 @@ class WholeNumbers {
   std::vector<Word> arctangent_;
 
   Word phase_ = 0, increment_, pending_, integral_;
+  Word state_ = config::state_search, search_count_ = 0, holdover_count_ = 0, search_offset_ = 0;
+  std::array<Controller, 3> loops_;
+  Word drive_ = 0;  // what comes out of the amplitude loop and the search
+  Word drive_now_ = 0, rebalance_now_ = 0, offset_now_ = 0, quadrature_now_ = 0;
+  Word offset_ = 0, dac_quadrature_ = 0;
+  Word drive_error_ = 0, rebalance_error_ = 0, quadrature_error_ = 0;
   std::array<Comb, 4> combs_;
   Word last_error_ = 0, counter_ = 0;
   bool locked_ = false;
