@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "cli/bench_plant.hpp"
 #include "cli/commands.hpp"
 #include "cli/engines.hpp"
 #include "cli/options.hpp"
@@ -85,6 +86,27 @@ Result measure(tb::Engine& engine, const std::vector<tb::SamplePair>& pairs, con
   return result;
 }
 
+/// The simulations: plant around hls and rtl where those are asked for, and the slow twin.
+void bench_plant(const BenchOptions& options, recording::Json& json) {
+  for (const char* name : {"hls", "rtl"}) {
+    if (std::find(options.engines.begin(), options.engines.end(), name) == options.engines.end()) continue;
+    const auto speeds = closed_loop_speed(name, options.seconds / options.repetitions, options.repetitions);
+    const double median = speeds[speeds.size() / 2];
+    json["closed_loop"][name] = {
+        {"median_times_real_time", median}, {"lowest", speeds.front()}, {"highest", speeds.back()}};
+    if (options.json) continue;
+    fmt::print("{:<9} closed loop with the plant: {:.3g} x real time  ({:.3g} to {:.3g})\n", name, median,
+               speeds.front(), speeds.back());
+    std::fflush(stdout);
+  }
+  const auto ms = slow_twin_ms(options.repetitions);
+  json["slow_twin_5h_ms"] = {{"median", ms[ms.size() / 2]}, {"lowest", ms.front()}, {"highest", ms.back()}};
+  if (!options.json) {
+    fmt::print("slow twin, 5 h of 1 Hz telemetry: {:.2f} ms  ({:.2f} to {:.2f})\n", ms[ms.size() / 2],
+               ms.front(), ms.back());
+  }
+}
+
 int bench(const BenchOptions& options) {
   const auto pairs = tone(200000);
   std::vector<Result> results;
@@ -104,8 +126,9 @@ int bench(const BenchOptions& options) {
   };
   const auto hls = find("hls"), sc = find("sc_fixed");
   const bool ratio = hls != results.end() && sc != results.end();
+  recording::Json json;
+  bench_plant(options, json);
   if (options.json) {
-    recording::Json json;
     for (const Result& r : results) {
       json["engines"][r.engine] = {{"median_pairs_per_s", r.median()},
                                    {"lowest", r.pairs_per_s.front()},
@@ -125,8 +148,8 @@ void add_bench(CLI::App& app, Job& job) {
   auto options = std::make_shared<BenchOptions>();
   options->engines = engine_names();
   options->engines.push_back("sc_fixed");
-  auto* command =
-      app.add_subcommand("bench", "Sample pairs a second of each engine, reference instrument, one core");
+  auto* command = app.add_subcommand(
+      "bench", "Speed of each engine and of the simulations, reference instrument, one core");
   command->add_option("--seconds", options->seconds, "time for each engine [s]")
       ->check(number_between(0.05, 600.0))
       ->capture_default_str();

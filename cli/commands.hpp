@@ -23,6 +23,8 @@ void add_calibrate(CLI::App& app, Job& job);
 void add_allan(CLI::App& app, Job& job);
 void add_info(CLI::App& app, Job& job);
 void add_bench(CLI::App& app, Job& job);
+void add_simulate(CLI::App& app, Job& job);
+void add_effects(CLI::App& app, Job& job);
 
 }  // namespace hemi::cli
 

@@ -33,6 +33,8 @@ int main(int argc, char** argv) {
   cli::add_allan(app, job);
   cli::add_info(app, job);
   cli::add_bench(app, job);
+  cli::add_simulate(app, job);
+  cli::add_effects(app, job);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

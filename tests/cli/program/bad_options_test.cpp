@@ -20,7 +20,7 @@ class BadOptions : public ProgramTest {
 
 TEST_F(BadOptions, Commands) {
   expect_bad({}, {"subcommand is required", "--help"});
-  expect_bad({"simulate"}, {"no command 'simulate'", "--help"});
+  expect_bad({"invent"}, {"no command 'invent'", "--help"});
   expect_bad({"run"}, {"recording is required", "hemi run --help"});
   expect_bad({"calibrate"}, {"inputs", "hemi calibrate --help"});
   expect_bad({"allan"}, {"recording is required", "hemi allan --help"});
