@@ -11,6 +11,8 @@
 #include "cli/calibrate.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/write.hpp"
+#include "cli/scenario/model_instrument.hpp"
+#include "golden/loops/control.hpp"
 #include "tb/registers.hpp"
 
 namespace hemi::cli {
@@ -96,7 +98,11 @@ Setup core_setup(const recording::InstrumentModel& model, std::optional<double> 
   recording::RawCapture nominal;
   nominal.sample_rate_hz = sampling(false).adc_rate_hz;
   nominal.full_scale_lsb = std::ldexp(1.0, sampling(false).adc_bits - 1);
-  return capture_setup(nominal, &model, std::nullopt, window_s);
+  Setup setup = capture_setup(nominal, &model, std::nullopt, window_s);
+  // The loops are those of the nominal instrument with this model's frequency, drive and quadrature.
+  loops::set_control(setup.values, scenario::instrument_of(model, physics::Instrument{}, {}),
+                     loops::CoreSampling::reference());
+  return setup;
 }
 
 void write_registers(const std::string& path, Calibration& calibration) {

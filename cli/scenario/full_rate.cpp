@@ -134,7 +134,7 @@ void Bench::run() {
 
 /// One record in the units of a recording; what does not hold yet is missing.
 TelemetrySample sample_of(const tb::Record& record, double time_s, const Scenario& scenario,
-                          double amplitude_word) {
+                          const loops::ControlDesign& design) {
   const bool counted = !live(record, config::status_frequency_invalid) &&
                        !live(record, config::status_unlocked) && !live(record, config::status_holdover);
   const bool closed = counted && !live(record, config::status_starting);
@@ -146,8 +146,10 @@ TelemetrySample sample_of(const tb::Record& record, double time_s, const Scenari
   sample.accel_g = inputs.accel_g;
   sample.supply_v = inputs.supply_v;
   sample.frequency_hz = counted ? w[config::word_frequency] : kNone;
-  sample.amplitude = w[config::word_amplitude] / kTicksAveraged / amplitude_word;
-  sample.drive_v = w[config::word_drive] / kTicksAveraged * scenario.instrument.drive_full_scale_v;
+  sample.amplitude = w[config::word_amplitude] / kTicksAveraged / design.amplitude_word;
+  // The voltage that acts: a held word passes this much of the carrier.
+  sample.drive_v =
+      w[config::word_drive] / kTicksAveraged * scenario.instrument.drive_full_scale_v * design.hold_gain;
   // A positive voltage cancels a positive split: the command is its negative.
   sample.quadrature_v =
       -w[config::word_quadrature] / kTicksAveraged * scenario.instrument.quadrature_full_scale_v;
@@ -207,13 +209,11 @@ void add_core_words(Simulated& simulated, const Bench& bench, std::size_t from, 
 Simulated simulate_full(const Scenario& scenario) {
   Bench bench(scenario);
   bench.run();
-  const double amplitude_word =
-      loops::design_control(scenario.instrument, core_sampling(scenario), control_wishes(scenario))
-          .amplitude_word;
+  const loops::ControlDesign design =
+      loops::design_control(scenario.instrument, core_sampling(scenario), control_wishes(scenario));
   std::vector<TelemetrySample> outputs;
   for (std::size_t m = 0; m < bench.records().size(); ++m) {
-    outputs.push_back(
-        sample_of(bench.records()[m], cli::output_time_s(m, bench.setup()), scenario, amplitude_word));
+    outputs.push_back(sample_of(bench.records()[m], cli::output_time_s(m, bench.setup()), scenario, design));
     outputs.back().case_temp_degc = bench.temperatures()[m].case_degc;
     outputs.back().board_temp_degc = bench.temperatures()[m].board_degc;
   }

@@ -6,6 +6,7 @@ import sys
 import bell
 import chamber
 import mems
+import paper
 import table1
 from job import JobError, RESULTS, Report
 
@@ -14,7 +15,7 @@ def main():
     RESULTS.mkdir(exist_ok=True)
     report = Report()
     try:
-        for step in (bell, table1, chamber, mems):
+        for step in (bell, table1, chamber, paper, mems):
             step.run(report)
         report.write()
     except JobError as error:

@@ -120,14 +120,15 @@ TEST_F(Simulate, ShippedScenarios) {
   ship("room_to_minus_20", {{R"(duration = "5 h")", R"(duration = "15 min")"}});
   ship("cycles", {{R"(hold = "2 h", ramp = 0.5)", R"(hold = "2 min", ramp = 60)"}});
   ship("rate_table", {{R"(hold = "60 s")", R"(hold = "6 s")"}});
-  for (const std::string name : {"paper_soaks", "room_to_minus_20", "cycles", "rate_table"}) {
+  ship("constant", {{R"(duration = "5 h")", R"(duration = "15 min")"}});
+  for (const std::string name : {"paper_soaks", "room_to_minus_20", "cycles", "rate_table", "constant"}) {
     good({"simulate", name + ".toml", "-o", "out"});
     const auto recording = recording::read_recording(path("out/" + name + ".csv"));
     EXPECT_GT(recording.rows(), 400U) << name;
     good({"run", "out/" + name + ".csv", "-m", "out/" + name + ".model.json"});
   }
   const auto shipped = fs::directory_iterator(HEMI_SOURCE_DIR "/scripts/scenarios");
-  EXPECT_EQ(std::distance(begin(shipped), end(shipped)), 5) << "a scenario that no test runs";
+  EXPECT_EQ(std::distance(begin(shipped), end(shipped)), 6) << "a scenario that no test runs";
 }
 
 // Start-up at a tenth of the amplitude, locked and closed within 4 s; then the rate that the scenario turns
