@@ -22,14 +22,15 @@ struct Capture {
 };
 
 /// Half a second of both ADCs; `drive` stands on the drive DAC the whole time.
-Capture capture(const std::vector<ActiveEffect>& effects, double amplitude, std::int16_t drive = 0) {
+Capture capture(const std::vector<ActiveEffect>& effects, double amplitude, std::int16_t drive = 0,
+                double second_mode = 0.5) {
   Instrument instrument;
   instrument.pickoff_noise_lsb = 0.0;
   instrument.force_noise_dph_rthz = 0.0;
   const Environment start;
   auto world = std::make_shared<World>(instrument, effects, start, 1);
   PlantConfiguration configuration;
-  configuration.start = {amplitude, 0.4, 0.5 * amplitude, 1.9};
+  configuration.start = {amplitude, 0.4, second_mode * amplitude, 1.9};
   Plant plant(instrument, follow(world, [](double) { return Environment{}; }), configuration);
   Capture result;
   for (int n = 0; n < kSamples; ++n) {
@@ -42,8 +43,8 @@ Capture capture(const std::vector<ActiveEffect>& effects, double amplitude, std:
 }
 
 /// Amplitudes [LSB] of the constant and of the harmonics 1 to 4 of the resonator's frequency.
-std::vector<double> harmonics(const std::vector<double>& v) {
-  const double hz = Instrument{}.at(20.0).omega_rad_s / kTurn;
+std::vector<double> harmonics(const std::vector<double>& v, double relative_shift = 0.0) {
+  const double hz = Instrument{}.at(20.0).omega_rad_s / kTurn * (1.0 + relative_shift);
   Eigen::MatrixXd basis(kSamples, 9);
   for (int n = 0; n < kSamples; ++n) {
     basis(n, 0) = 1.0;
@@ -90,6 +91,34 @@ TEST(RawChannels, PickoffNonlinearityMakesHarmonicsThatGoWithTheAmplitude) {
       EXPECT_LT(h[4], kRounding_lsb);
     }
   }
+}
+
+TEST(RawChannels, DuffingMakesAThirdHarmonic) {
+  // x'' + w^2 x + w^2 k3 x^3 = 0: third harmonic k3 A^3/32, df/f = (3/8) k3 A^2, to first order in k3 A^2 =
+  // 8e-3. The plant's splitting adds (3 w h)^2/24 at the third harmonic. The frequency follows the ring-down
+  // by 4e-6, 0.05 rad of the fundamental over the capture, whose skirt reaches the even harmonics at 1e-5 of
+  // it.
+  const double shift = 3e-3;
+  const auto c = capture({{"duffing", {{"relative_shift", shift}}}}, 1.0, 0, 0.0);
+  const auto h = harmonics(c.x, shift);
+  const double expected_lsb = 0.8 * kLsb * (8.0 / 3.0 * shift) / 32.0;
+  const double splitting = std::pow(3.0 * Instrument{}.at(20.0).omega_rad_s * 1e-5, 2) / 24.0;
+  EXPECT_NEAR(h[3], expected_lsb, (0.01 + splitting) * expected_lsb + kRounding_lsb);
+  EXPECT_LT(h[2], 1e-5 * 0.8 * kLsb);
+  EXPECT_LT(h[0], kRounding_lsb);
+}
+
+TEST(RawChannels, QuadraticStiffnessMakesAMeanAndASecondHarmonic) {
+  const double k2 = 3e6;
+  const double omega_rad_s = Instrument{}.at(20.0).omega_rad_s;
+  const double volts = catalogue().at("quadratic_stiffness").description.parameters[1].typical;
+  const double relative = k2 * volts / (omega_rad_s * omega_rad_s);
+  const auto c = capture({{"quadratic_stiffness", {{"k2", k2}}}}, 1.0, 0, 0.0);
+  const auto h = harmonics(c.x);
+  const double full_lsb = 0.8 * kLsb;
+  EXPECT_NEAR(h[0], -full_lsb * relative / 2.0, 0.01 * full_lsb * relative + kRounding_lsb);
+  EXPECT_NEAR(h[2], full_lsb * relative / 6.0, 0.01 * full_lsb * relative + kRounding_lsb);
+  EXPECT_GT(full_lsb * relative / 6.0, 1.0);
 }
 
 TEST(RawChannels, OffsetIsAConstantAndNothingElse) {
