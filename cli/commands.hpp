@@ -25,6 +25,7 @@ void add_info(CLI::App& app, Job& job);
 void add_bench(CLI::App& app, Job& job);
 void add_simulate(CLI::App& app, Job& job);
 void add_effects(CLI::App& app, Job& job);
+void add_diagnose(CLI::App& app, Job& job);
 
 }  // namespace hemi::cli
 

@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   cli::add_bench(app, job);
   cli::add_simulate(app, job);
   cli::add_effects(app, job);
+  cli::add_diagnose(app, job);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

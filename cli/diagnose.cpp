@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "cli/chain_run.hpp"
+#include "cli/commands.hpp"
+#include "cli/diagnose_report.hpp"
+#include "cli/options.hpp"
+#include "cli/recording/error.hpp"
+#include "cli/recording/interrupt.hpp"
+#include "cli/recording/recording.hpp"
+#include "cli/recording/write.hpp"
+#include "golden/calibration/linear_fit.hpp"
+
+namespace hemi::cli {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+struct DiagnoseOptions {
+  std::string recording;
+  std::string model;
+  std::string directory = ".";
+  double from_s = -kInfinite, to_s = kInfinite;
+  std::optional<double> heldout_from_s, heldout_to_s;
+  bool json = false;
+};
+
+struct Stretch {
+  diagnosis::BenchPart part;
+  double first_s, last_s;
+};
+
+// The longest run of rows between two times without a gap or a missing value.
+Stretch longest_stretch(const recording::Recording& recording, double from_s, double to_s) {
+  check_stretch(from_s, to_s);
+  const auto& time = recording.require("time_s", "the diagnosis");
+  const auto& force = recording.find("force_v")->values;
+  const auto& displacement = recording.find("displacement_v")->values;
+  std::vector<bool> starts(time.size() + 1, false);
+  for (const auto& gap : recording.gaps) starts[gap.after_row + 1] = true;
+  std::size_t best = 0, best_at = 0, at = 0, inside = 0;
+  for (std::size_t i = 0; i <= time.size(); ++i) {
+    const bool whole = i < time.size() && time[i] >= from_s && time[i] <= to_s && !std::isnan(force[i]) &&
+                       !std::isnan(displacement[i]);
+    inside += i < time.size() && time[i] >= from_s && time[i] <= to_s ? 1 : 0;
+    if (whole && !starts[i]) continue;
+    if (i - at > best) {
+      best = i - at;
+      best_at = at;
+    }
+    at = whole ? i : i + 1;
+  }
+  if (best < 1024)
+    throw recording::InputError(
+        {.path = recording.path},
+        fmt::format("{} rows without a gap from {} s to {} s; 1024 are needed", best, from_s, to_s),
+        "record longer, or give another part");
+  if (best < inside)
+    print_notes({fmt::format("{} of {} rows are used, the longest stretch without a gap", best, inside)});
+  const auto rows = static_cast<Eigen::Index>(best);
+  return {{Eigen::VectorXd::Map(force.data() + best_at, rows),
+           Eigen::VectorXd::Map(displacement.data() + best_at, rows)},
+          time[best_at],
+          time[best_at + best - 1]};
+}
+
+std::string make_directory(const std::string& directory) {
+  std::error_code code;
+  fs::create_directories(directory, code);
+  if (code || !fs::is_directory(directory))
+    throw recording::OutputError(directory, code ? code.message() : "is no directory", "name another one");
+  return directory;
+}
+
+diagnosis::BenchDiagnosis run(const DiagnoseOptions& options, const Stretch& fitted,
+                              const std::optional<diagnosis::BenchPart>& other, double rate_hz,
+                              const std::optional<diagnosis::BenchPrior>& prior) {
+  diagnosis::BenchOptions search;
+  search.tick = recording::check_interrupt;
+  try {
+    return diagnosis::diagnose_bench(fitted.part, other, rate_hz, prior, search);
+  } catch (const calibration::RankDeficiencyError& error) {
+    throw recording::InputError({.path = options.recording}, error.what(), "record with a force that moves");
+  }
+}
+
+int diagnose(const DiagnoseOptions& options) {
+  refuse_settled_points(options.recording);
+  const auto recording = recording::read_recording(options.recording);
+  if (recording.find("force_v") == nullptr || recording.find("displacement_v") == nullptr)
+    throw recording::InputError({.path = options.recording},
+                                "no force_v and displacement_v; telemetry of a gyro is not diagnosed yet",
+                                "give a bench recording, or use hemi calibrate and hemi allan");
+  const std::string json_path = (fs::path(options.directory) / "diagnosis.json").string();
+  const std::string model_path = (fs::path(options.directory) / "corrected.model.json").string();
+  std::vector<std::string> inputs = {options.recording};
+  std::optional<diagnosis::BenchPrior> prior;
+  recording::InstrumentModel given{.device = recording.device};
+  if (!options.model.empty()) {
+    inputs.push_back(options.model);
+    given = recording::read_model(options.model);
+    prior = prior_of(given);
+  }
+  refuse_overwriting({json_path, model_path}, inputs);
+  const Stretch fitted = longest_stretch(recording, options.from_s, options.to_s);
+  std::optional<diagnosis::BenchPart> other;
+  if (options.heldout_from_s || options.heldout_to_s)
+    other = longest_stretch(recording, options.heldout_from_s.value_or(-kInfinite),
+                            options.heldout_to_s.value_or(kInfinite))
+                .part;
+  print_notes(recording.notes);
+  const auto result = run(options, fitted, other, recording.sample_rate_hz, prior);
+  make_directory(options.directory);
+  const recording::Json json =
+      to_json(result, {options.recording, options.model, fitted.first_s, fitted.last_s});
+  recording::write_model(model_path, corrected_model(result, given));
+  recording::write_text(json_path, recording::json_text(json, 2) + "\n");
+  if (options.json)
+    fmt::print("{}\n", recording::json_text(json, 2));
+  else
+    fmt::print("{}wrote {}, {}\n", to_text(result), json_path, model_path);
+  return exit_good;
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app, Job& job) {
+  auto options = std::make_shared<DiagnoseOptions>();
+  auto* command = app.add_subcommand("diagnose", "What a resonator does that its model leaves out");
+  command->add_option("recording", options->recording, "bench recording: time_s, force_v, displacement_v")
+      ->required();
+  command->add_option("-m,--model", options->model,
+                      "instrument model with a bench part; without it a linear one is fitted");
+  command
+      ->add_option("-o,--output", options->directory, "directory for diagnosis.json and corrected.model.json")
+      ->capture_default_str();
+  const auto finite = number_between(-1e300, 1e300);
+  command->add_option("--from", options->from_s, "start of the part that is fitted [s]")->check(finite);
+  command->add_option("--to", options->to_s, "its end [s]")->check(finite);
+  command->add_option("--heldout-from", options->heldout_from_s, "start of a part that is only predicted [s]")
+      ->check(finite);
+  command->add_option("--heldout-to", options->heldout_to_s, "its end [s]")->check(finite);
+  command->add_flag("--json", options->json, "diagnosis as JSON on standard output too");
+  command->footer(
+      "Example: hemi diagnose silverbox.csv --from 67.175 --heldout-from 0.164 --heldout-to 66.19 -o out");
+  command->callback([options, &job] { job = [options] { return diagnose(*options); }; });
+}
+
+}  // namespace hemi::cli
