@@ -69,7 +69,7 @@ Outcome ProgramTest::start(const Arguments& arguments, int interrupt_after_ms) c
       ::kill(child, SIGINT);
       interrupted = true;
     }
-    if (elapsed > std::chrono::minutes(1)) ::kill(child, SIGKILL);
+    if (elapsed > std::chrono::minutes(5)) ::kill(child, SIGKILL);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   const Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content(out_name),

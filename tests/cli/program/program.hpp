@@ -26,7 +26,7 @@ using Arguments = std::vector<std::string>;
 /// Runs build/hemi in a directory of its own, whose files a test names without a path.
 class ProgramTest : public recording::testing::ScratchTest {
  protected:
-  /// To its end; a minute at most.
+  /// To its end; five minutes at most, which sanitizers need.
   Outcome hemi(const Arguments& arguments) const;
   /// SIGINT `delay_ms` after the start.
   Outcome hemi_interrupted(const Arguments& arguments, int delay_ms) const;
