@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "golden/loops/control.hpp"
+
 namespace hemi::cli {
 namespace {
 
@@ -14,14 +16,7 @@ constexpr double ticks_averaged = 2.0 * config::ticks_per_output;
 }  // namespace
 
 double full_scale_amplitude(const Sampling& sampling) {
-  double cordic_gain = 1.0;
-  for (int i = 0; i < config::cordic_iterations; ++i) cordic_gain *= std::sqrt(1.0 + std::ldexp(1.0, -2 * i));
-  double taps = 0.0;
-  for (const int tap : config::image_taps) taps += tap;
-  const double cic = std::pow(sampling.decimation, config::cic_order) /
-                     std::ldexp(1.0, config::growth_bits(sampling.decimation, config::cic_order));
-  return 0.5 * cordic_gain * cic * std::ldexp(taps, -config::image_shift) *
-         std::ldexp(config::table_scale, -20);
+  return loops::full_scale_amplitude(sampling.decimation);
 }
 
 double output_time_s(std::size_t output, const Setup& setup) {

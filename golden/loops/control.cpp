@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "golden/chain/phase_detector.hpp"
+
 namespace hemi::loops {
 namespace {
 
@@ -11,32 +13,10 @@ using namespace config;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-/// Product of the CORDIC's stretchings sqrt(1 + 4^-i).
-double cordic_gain() {
-  double gain = 1.0;
-  for (int i = 0; i < cordic_iterations; ++i) gain *= std::sqrt(1.0 + std::ldexp(1.0, -2 * i));
-  return gain;
-}
-
-/// Baseband word of a tone of full scale: half of it, the cic's gain over its growth, the image filter's and
-/// the table's.
-double front_end_gain(int decimation) {
-  double taps = 0.0;
-  for (const int tap : image_taps) taps += tap;
-  return 0.5 * std::pow(decimation, cic_order) / std::ldexp(1.0, growth_bits(decimation, cic_order)) *
-         std::ldexp(taps, -image_shift) * std::ldexp(table_scale, -20);
-}
-
 /// What a DAC that holds each word for one sample leaves of a carrier: sin(pi f/fs) / (pi f/fs).
 double hold_gain(const physics::Parameters& at20, const CoreSampling& sampling) {
   const double x = 0.5 * at20.omega_rad_s / sampling.adc_rate_hz;
   return std::sin(x) / x;
-}
-
-double polynomial(const std::vector<double>& coefficients, double x) {
-  double y = 0.0;
-  for (auto c = coefficients.rbegin(); c != coefficients.rend(); ++c) y = y * x + *c;
-  return y;
 }
 
 Loop closed_at(LoopPlant plant, double gain_per_s, double bandwidth_hz) {
@@ -46,12 +26,19 @@ Loop closed_at(LoopPlant plant, double gain_per_s, double bandwidth_hz) {
 
 }  // namespace
 
+double full_scale_amplitude(int decimation) {
+  double taps = 0.0;
+  for (const int tap : image_taps) taps += tap;
+  const double cic = std::pow(decimation, cic_order) / std::ldexp(1.0, growth_bits(decimation, cic_order));
+  return 0.5 * golden::cordic_gain() * cic * std::ldexp(taps, -image_shift) * std::ldexp(table_scale, -20);
+}
+
 ControlDesign design_control(const physics::Instrument& instrument, const CoreSampling& sampling,
                              const ControlWishes& wishes) {
   const physics::Parameters at20 = instrument.at(20.0);
   ControlDesign d;
-  d.baseband_word = instrument.pickoff_full_scale_per_amplitude * front_end_gain(sampling.decimation);
-  d.amplitude_word = d.baseband_word * cordic_gain();
+  d.amplitude_word = instrument.pickoff_full_scale_per_amplitude * full_scale_amplitude(sampling.decimation);
+  d.baseband_word = d.amplitude_word / golden::cordic_gain();
   LoopPlant plant;
   plant.adc_rate_hz = sampling.adc_rate_hz;
   plant.decimation = sampling.decimation;
@@ -75,8 +62,7 @@ ControlDesign design_control(const physics::Instrument& instrument, const CoreSa
 void set_control(std::array<double, register_count>& v, const physics::Instrument& instrument,
                  const CoreSampling& sampling, const ControlWishes& wishes) {
   const ControlDesign d = design_control(instrument, sampling, wishes);
-  const double start_hz =
-      polynomial(instrument.frequency_hz, wishes.start_degc - instrument.frequency_reference_degc);
+  const double start_hz = instrument.at(wishes.start_degc).omega_rad_s / kTurn;
   const double tick_rate_hz = sampling.adc_rate_hz / sampling.decimation;
   v[reg_nco_start] = start_hz / sampling.adc_rate_hz;
   v[reg_loop_proportional] = d.reference_phase.gains.proportional;

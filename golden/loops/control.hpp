@@ -36,6 +36,10 @@ struct CoreSampling {
   static CoreSampling wide() { return {2.5e5, 50}; }
 };
 
+/// Amplitude word of a tone of the ADC's full scale: half of it, times the gains of cic, image filter, table
+/// and CORDIC.
+double full_scale_amplitude(int decimation);
+
 /// The four loops of one instrument, in the units of the core's words.
 struct ControlDesign {
   Loop reference_phase;  ///< turns/sample in, turns out

@@ -56,6 +56,15 @@ inline bool raised(const Reading& r, config::StatusBit bit) {
   return (r.live >> bit & 1) != 0;
 }
 
+/// At 20 degC on a table whose rate [deg/s] may be changed between runs.
+inline physics::ParameterSource turning(const physics::Instrument& instrument, const double& rate_dps) {
+  return [at20 = instrument.at(20.0), &rate_dps](double, double) {
+    physics::Parameters p = at20;
+    p.rate_rad_s = rate_dps * std::numbers::pi / 180.0;
+    return p;
+  };
+}
+
 /// Plant and engine together; the plant's parameters come from `source` (constant: Instrument::at(20)).
 class ControlBench {
  public:

@@ -170,12 +170,8 @@ INSTANTIATE_TEST_SUITE_P(Loops, LoopResponse,
 TEST(Rebalance, FollowsAStepOfAHundredDegreesASecondWithoutLosingLock) {
   const physics::Instrument instrument;
   double rate_dps = 0.0;
-  auto source = [&](double, double) {
-    physics::Parameters p = instrument.at(20.0);
-    p.rate_rad_s = rate_dps * std::numbers::pi / 180.0;
-    return p;
-  };
-  tests::ControlBench bench(tb::make_hls_engine(false), instrument, false, {1.0, 2.0, 0.0, 0.0}, 5, source);
+  tests::ControlBench bench(tb::make_hls_engine(false), instrument, false, {1.0, 2.0, 0.0, 0.0}, 5,
+                            tests::turning(instrument, rate_dps));
   bench.run(5.0);
   for (const double step : {100.0, -100.0, 0.0}) {
     rate_dps = step;
@@ -193,12 +189,8 @@ TEST(Rebalance, ScaleFactorIsLinearWithinOneMillionth) {
   physics::Instrument instrument;
   instrument.force_noise_dph_rthz = 0.0;
   double rate_dps = 0.0;
-  auto source = [&](double, double) {
-    physics::Parameters p = instrument.at(20.0);
-    p.rate_rad_s = rate_dps * std::numbers::pi / 180.0;
-    return p;
-  };
-  tests::ControlBench bench(tb::make_hls_engine(false), instrument, false, {1.0, 2.0, 0.0, 0.0}, 1, source);
+  tests::ControlBench bench(tb::make_hls_engine(false), instrument, false, {1.0, 2.0, 0.0, 0.0}, 1,
+                            tests::turning(instrument, rate_dps));
   bench.run(25.0);
   Eigen::MatrixXd basis(11, 2);
   Eigen::VectorXd mean_dps(11);

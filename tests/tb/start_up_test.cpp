@@ -51,12 +51,8 @@ TEST(StartUp, ColdStartTakesTheTimeThatDriveAndQualityFactorSay) {
 TEST(StartUp, HoldsOverWhileTheSignalIsLostAndGoesOn) {
   const physics::Instrument instrument;
   double rate_dps = 20.0;
-  auto source = [&](double, double) {
-    physics::Parameters p = instrument.at(20.0);
-    p.rate_rad_s = rate_dps * std::numbers::pi / 180.0;
-    return p;
-  };
-  tests::ControlBench bench(tb::make_hls_engine(false), instrument, false, {1.0, 1.0, 0.0, 0.0}, 9, source);
+  tests::ControlBench bench(tb::make_hls_engine(false), instrument, false, {1.0, 1.0, 0.0, 0.0}, 9,
+                            tests::turning(instrument, rate_dps));
   bench.run(15.0);
   for (const double lost_s : {1e-3, 3e-3, 0.01, 0.1, 1.0}) {
     const auto lost = bench.run(lost_s, [](tb::SamplePair& pair) { pair.x = pair.y = 0; });
