@@ -6,6 +6,7 @@
 #include "cli/chain_run.hpp"
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
+#include "cli/pages.hpp"
 #include "cli/recording/channels.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/recording.hpp"
@@ -18,6 +19,7 @@ struct AllanOptions {
   std::string recording;
   std::string channel = "rate_dph";
   double average_s = 100.0;
+  std::string report;
   bool decades = false;
   bool json = false;
 };
@@ -40,6 +42,7 @@ Eigen::VectorXd longest_stretch(const recording::Recording& recording, const std
 
 int allan(const AllanOptions& options) {
   refuse_settled_points(options.recording);
+  refuse_overwriting({options.report}, {options.recording});
   const auto recording = recording::read_recording(options.recording);
   const auto& values = recording.require(options.channel, "the Allan deviation");
   const Eigen::VectorXd stretch = longest_stretch(recording, values);
@@ -61,6 +64,13 @@ int allan(const AllanOptions& options) {
       options.decades ? calibration::TauSpacing::kDecade : calibration::TauSpacing::kOctave);
   const bool stability =
       static_cast<double>(stretch.size()) >= 2.0 * std::round(options.average_s / interval_s);
+  const auto stable = stability
+                          ? std::optional(calibration::bias_stability(stretch, interval_s, options.average_s))
+                          : std::nullopt;
+  std::string page;
+  if (!options.report.empty())
+    page = write_allan_page(options.report, {options.recording, options.channel, unit, stretch, interval_s,
+                                             result, options.average_s, stable});
   if (options.json) {
     recording::Json json{{"channel", options.channel},
                          {"unit", unit},
@@ -78,10 +88,8 @@ int allan(const AllanOptions& options) {
                                 {"upper_bound", result.bias_instability_is_bound}};
     if (result.angle_random_walk)
       json["angle_random_walk_per_root_s"] = result.angle_random_walk->coefficient;
-    if (stability)
-      json["bias_stability"] = {
-          {"average_s", options.average_s},
-          {"value", calibration::bias_stability(stretch, interval_s, options.average_s)}};
+    if (stable) json["bias_stability"] = {{"average_s", options.average_s}, {"value", *stable}};
+    if (!page.empty()) json["report"] = page;
     fmt::print("{}\n", recording::json_text(json, 2));
     return exit_good;
   }
@@ -101,10 +109,11 @@ int allan(const AllanOptions& options) {
   } else {
     fmt::print("angle random walk: no stretch of slope -1/2 over a decade, so none is given\n");
   }
-  if (stability) {
+  if (stable) {
     fmt::print("bias stability (standard deviation of {:.6g} s averages) {:.6g} {}\n", options.average_s,
-               calibration::bias_stability(stretch, interval_s, options.average_s), unit);
+               *stable, unit);
   }
+  if (!page.empty()) fmt::print("wrote {}\n", page);
   return exit_good;
 }
 
@@ -119,6 +128,7 @@ void add_allan(CLI::App& app, Job& job) {
       ->check(positive_number())
       ->capture_default_str();
   command->add_flag("--decades", options->decades, "tau in decades instead of octaves");
+  command->add_option("--report", options->report, report_option_help);
   command->add_flag("--json", options->json, "result as JSON");
   command->footer("Example: hemi allan out.csv --channel compensated_rate_dph");
   command->callback([options, &job] { job = [options] { return allan(*options); }; });

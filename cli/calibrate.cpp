@@ -8,6 +8,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
+#include "cli/pages.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/raw_capture.hpp"
 #include "golden/calibration/linear_fit.hpp"
@@ -58,6 +59,7 @@ void calibrate_recordings(const std::vector<std::string>& paths, Calibration& ca
     if (!thermal && !any_rate) recordings.front().require("rate_dph", "a drift model");
     const auto drift = calibrate_bias(recordings, calibration);
     calibrate_channels(recordings, thermal, drift, calibration);
+    std::ranges::move(calibration_plots(thermal, drift, calibration), std::back_inserter(calibration.plots));
   });
 }
 
@@ -69,7 +71,7 @@ std::vector<std::string> all_inputs(const CalibrateOptions& options) {
 }
 
 int calibrate(const CalibrateOptions& options) {
-  refuse_overwriting({options.output, options.registers}, all_inputs(options));
+  refuse_overwriting({options.output, options.registers, options.report}, all_inputs(options));
   Calibration calibration{options};
   if (!options.base.empty()) calibration.model = recording::read_model(options.base);
   std::vector<std::string> recordings;
@@ -77,7 +79,10 @@ int calibrate(const CalibrateOptions& options) {
     if (!holds_settled_points(path))
       recordings.push_back(path);
     else
-      on_data(path, [&] { calibrate_frequency(path, calibration); });
+      on_data(path, [&] {
+        calibrate_frequency(path, calibration);
+        std::ranges::move(settled_plots(path, calibration), std::back_inserter(calibration.plots));
+      });
   }
   if (!recordings.empty()) calibrate_recordings(recordings, calibration);
   score_heldout(calibration);
@@ -86,6 +91,11 @@ int calibrate(const CalibrateOptions& options) {
     recording::write_model(options.output, calibration.model);
     calibration.text += fmt::format("wrote {}\n", options.output);
     calibration.json["model"] = options.output;
+  }
+  if (!options.report.empty()) {
+    const std::string page = write_calibration_page(calibration);
+    calibration.text += fmt::format("wrote {}\n", page);
+    calibration.json["report"] = page;
   }
   if (options.json)
     fmt::print("{}\n", recording::json_text(calibration.json, 2));
@@ -149,6 +159,7 @@ void add_calibrate(CLI::App& app, Job& job) {
   command->add_option("--blocks", options->blocks, "contiguous blocks for held-out scores; 0 for none")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
+  command->add_option("--report", options->report, report_option_help);
   command->add_flag("--json", options->json, "result as JSON");
   command->footer(
       "Example: hemi calibrate tests/data/paper_table1.csv --order 3 -o hrg.model.json\n"

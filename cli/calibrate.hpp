@@ -12,6 +12,7 @@
 #include "cli/drift_data.hpp"
 #include "cli/recording/model.hpp"
 #include "cli/recording/recording.hpp"
+#include "cli/report/report.hpp"
 #include "golden/calibration/frequency_polynomial.hpp"
 #include "golden/calibration/settled_fit.hpp"
 #include "golden/calibration/thermal_fit.hpp"
@@ -24,6 +25,7 @@ struct CalibrateOptions {
   std::string base;
   std::string output;
   std::string registers;
+  std::string report;
   std::optional<int> order;
   double reference_degc = 0.0;
   std::optional<double> reference_hz;
@@ -40,6 +42,7 @@ struct Calibration {
   recording::InstrumentModel model{};
   std::string text{};
   recording::Json json{};
+  std::vector<report::Plot> plots{};  ///< for the report, where one is asked for
 
   /// A part that these recordings do not give, and what would: printed, and in the JSON's `left_out`.
   void leave_out(const std::string& part, const std::string& why);

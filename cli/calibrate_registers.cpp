@@ -5,74 +5,18 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
 
 #include "cli/calibrate.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/write.hpp"
+#include "cli/register_image.hpp"
 #include "cli/scenario/model_instrument.hpp"
 #include "golden/loops/control.hpp"
 #include "tb/registers.hpp"
 
 namespace hemi::cli {
 namespace {
-
-constexpr int image_bits = 54;  ///< the widest register: all words of a memory file have that width
-
-std::uint64_t word_of(std::int64_t raw, int bits) {
-  return static_cast<std::uint64_t>(raw) & ((std::uint64_t{1} << bits) - 1);
-}
-
-std::string hex_of(std::int64_t raw, int bits) {
-  return fmt::format("{:0{}x}", word_of(raw, bits), (bits + 3) / 4);
-}
-
-std::string as_json(const Setup& setup, const tb::RegisterImage& image, const std::string& device) {
-  recording::Json json = {{"format", "hemi-registers/1"}, {"device", device}};
-  for (int i = 0; i < config::register_count; ++i) {
-    const auto& r = config::registers[i];
-    const double stored = tb::to_value(image[i], r.format);
-    recording::Json entry = {{"index", i},
-                             {"name", r.name},
-                             {"value", stored},
-                             {"unit", r.unit},
-                             {"raw", image[i]},
-                             {"hex", hex_of(image[i], r.format.width)},
-                             {"width", r.format.width},
-                             {"fraction", r.format.fraction},
-                             {"meaning", r.meaning}};
-    if (i != config::reg_parity) entry["rounding_error"] = stored - setup.values[i];
-    json["registers"].push_back(entry);
-  }
-  return recording::json_text(json, 2) + "\n";
-}
-
-std::string as_header(const tb::RegisterImage& image, const std::string& device) {
-  std::string text = fmt::format(
-      "/* Register image of {}: raw words, value = raw * 2^-fraction. Made by hemi calibrate. */\n"
-      "#ifndef HEMI_REGISTER_IMAGE_H\n#define HEMI_REGISTER_IMAGE_H\n\n#include <stdint.h>\n\n",
-      device.empty() ? "one instrument" : device);
-  // A name from a file must not end the comment.
-  for (std::size_t at = text.find("*/"); at != text.rfind("*/"); at = text.find("*/"))
-    text.replace(at, 2, "* ");
-  text += fmt::format("#define HEMI_REGISTER_COUNT {}\n\n", int{config::register_count});
-  text += "static const int64_t hemi_register_image[HEMI_REGISTER_COUNT] = {\n";
-  for (int i = 0; i < config::register_count; ++i) {
-    const auto& r = config::registers[i];
-    text += fmt::format("    INT64_C({}), /* {}: {:.9g} {}, {} bits, fraction {} */\n", image[i], r.name,
-                        tb::to_value(image[i], r.format), r.unit, r.format.width, r.format.fraction);
-  }
-  return text + "};\n\n#endif\n";
-}
-
-std::string as_memory(const tb::RegisterImage& image) {
-  std::string text = fmt::format("// {} words of {} bits, two's complement, in the order of the registers\n",
-                                 int{config::register_count}, image_bits);
-  for (int i = 0; i < config::register_count; ++i)
-    text += fmt::format("{} // {}\n", hex_of(image[i], image_bits), config::registers[i].name);
-  return text;
-}
 
 /// Largest difference between f(T)'s inverse and the thermometer with its rounded coefficients.
 double thermometer_error_degc(const recording::InstrumentModel& model, const tb::RegisterImage& image) {
@@ -117,11 +61,11 @@ void write_registers(const std::string& path, Calibration& calibration) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".json")
-    recording::write_text(path, as_json(setup, image, model.device));
+    recording::write_text(path, image_as_json(image, setup.values, model.device));
   else if (extension == ".h")
-    recording::write_text(path, as_header(image, model.device));
+    recording::write_text(path, image_as_c(image, model.device));
   else if (extension == ".mem")
-    recording::write_text(path, as_memory(image));
+    recording::write_text(path, image_as_memory(image));
   else
     throw recording::InputError({path}, "no form of register image has this extension",
                                 "name it .json, .h or .mem");

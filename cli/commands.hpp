@@ -26,6 +26,9 @@ void add_bench(CLI::App& app, Job& job);
 void add_simulate(CLI::App& app, Job& job);
 void add_effects(CLI::App& app, Job& job);
 void add_diagnose(CLI::App& app, Job& job);
+void add_report(CLI::App& app, Job& job);
+void add_export(CLI::App& app, Job& job);
+void add_prove(CLI::App& app, Job& job);
 
 }  // namespace hemi::cli
 

@@ -10,6 +10,8 @@
 #include "cli/commands.hpp"
 #include "cli/engines.hpp"
 #include "cli/options.hpp"
+#include "cli/output.hpp"
+#include "cli/pages.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/interrupt.hpp"
 #include "cli/recording/progress.hpp"
@@ -27,6 +29,7 @@ struct CompareOptions {
   std::optional<double> frequency_hz;
   std::optional<double> adc_rate_hz;
   EngineOptions engine;
+  std::string report;
   bool json = false;
 };
 
@@ -88,6 +91,7 @@ struct PairResult {
   std::uint64_t records = 0;
   std::uint64_t differing_records = 0;
   std::uint64_t words = 0;
+  std::vector<tb::Record> first_records, second_records;
 };
 
 /// Both engines in step over the same chunks, until the end or the first difference.
@@ -127,6 +131,8 @@ PairResult compare_pair(const Input& input, const std::string& first, const std:
   result.differing_records = result.records - std::min(ra.size(), rb.size());
   for (std::size_t i = 0; i < std::min(ra.size(), rb.size()); ++i)
     result.differing_records += ra[i] == rb[i] ? 0 : 1;
+  result.first_records = std::move(ra);
+  result.second_records = std::move(rb);
   return result;
 }
 
@@ -197,7 +203,43 @@ void check(const CompareOptions& options) {
                                 "add rtl to --engines");
   }
   refuse_settled_points(options.recording);
-  refuse_overwriting({options.engine.waves}, {options.recording, options.model});
+  refuse_overwriting({options.engine.waves, options.report}, {options.recording, options.model});
+}
+
+/// Records as channels over time; of telemetry at its own times.
+recording::Recording outputs(const Input& input, const std::vector<tb::Record>& records) {
+  std::vector<double> time_s(records.size());
+  for (std::size_t i = 0; i < records.size(); ++i)
+    time_s[i] = input.telemetry ? input.telemetry->time_s[i] : output_time_s(i, input.setup);
+  return to_recording(records, time_s, input.setup, input.telemetry.has_value());
+}
+
+/// Notes a pair for the report; the outputs of the first pair, or of the first one that differs.
+void note(const Input& input, const std::string& first, const std::string& second, const PairResult& result,
+          ComparePage& page) {
+  ComparedPair pair{first,
+                    second,
+                    !result.mismatch && result.differing_records == 0,
+                    result.records,
+                    result.differing_records,
+                    result.words,
+                    {},
+                    {},
+                    0,
+                    {}};
+  if (result.mismatch) {
+    pair.block = config::taps[result.mismatch->tap].block;
+    pair.word = config::taps[result.mismatch->tap].name;
+    pair.sample = result.mismatch->sample;
+    pair.report = result.mismatch->report(first, second);
+  }
+  const bool first_to_differ = !pair.equal && page.differing.empty();
+  if (page.pairs.empty() || first_to_differ) page.outputs = outputs(input, result.first_records);
+  if (first_to_differ) {
+    page.other_outputs = outputs(input, result.second_records);
+    page.differing = second;
+  }
+  page.pairs.push_back(std::move(pair));
 }
 
 int compare(CompareOptions options) {
@@ -209,6 +251,7 @@ int compare(CompareOptions options) {
   WavesFile waves(options.engine.waves);
   options.engine.waves = waves.partial();
   int code = exit_good;
+  ComparePage page{.recording = options.recording};
   recording::Json json = recording::Json::array();
   for (std::size_t k = 1; k < options.engines.size(); ++k) {
     const auto& first = options.engines[0];
@@ -238,12 +281,18 @@ int compare(CompareOptions options) {
       }
     }
     json.push_back(entry);
+    if (!options.report.empty()) note(input, first, second, result, page);
   }
   waves.commit();
   if (ideal) {
     const auto differences = ideal_differences(input, options.engines.front());
     json.push_back({{"engines", {"ideal", options.engines.front()}}, {"differences", to_json(differences)}});
-    if (!options.json) fmt::print("{}", to_text(differences, options.engines.front()));
+    page.ideal = to_text(differences, options.engines.front());
+    if (!options.json) fmt::print("{}", page.ideal);
+  }
+  if (!options.report.empty()) {
+    const std::string path = write_compare_page(options.report, page);
+    if (!options.json) fmt::print("wrote {}\n", path);
   }
   if (options.json) fmt::print("{}\n", recording::json_text(json, 2));
   return code;
@@ -280,6 +329,7 @@ void add_compare(CLI::App& app, Job& job) {
       ->check(number_between(0.0, 0.99));
   command->add_option("--seed", options->engine.seed, "of gaps and back-pressure")->capture_default_str();
   command->add_option("--waves", options->engine.waves, "FST file of the rtl engine's signals");
+  command->add_option("--report", options->report, report_option_help);
   command->add_flag("--json", options->json, "result as JSON");
   command->footer(
       "Example: hemi compare capture.raw.csv --frequency 4425 --engines golden,hls,rtl --gaps 0.2 "

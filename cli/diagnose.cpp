@@ -8,7 +8,11 @@
 
 #include "cli/chain_run.hpp"
 #include "cli/commands.hpp"
+#include "cli/diagnose_capture.hpp"
+#include "cli/diagnose_case.hpp"
 #include "cli/diagnose_report.hpp"
+#include "cli/diagnose_table.hpp"
+#include "cli/diagnose_telemetry.hpp"
 #include "cli/options.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/interrupt.hpp"
@@ -25,6 +29,8 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 struct DiagnoseOptions {
   std::string recording;
   std::string model;
+  std::string telemetry;
+  std::optional<double> adc_rate_hz;
   std::string directory = ".";
   double from_s = -kInfinite, to_s = kInfinite;
   std::optional<double> heldout_from_s, heldout_to_s;
@@ -90,13 +96,7 @@ diagnosis::BenchDiagnosis run(const DiagnoseOptions& options, const Stretch& fit
   }
 }
 
-int diagnose(const DiagnoseOptions& options) {
-  refuse_settled_points(options.recording);
-  const auto recording = recording::read_recording(options.recording);
-  if (recording.find("force_v") == nullptr || recording.find("displacement_v") == nullptr)
-    throw recording::InputError({.path = options.recording},
-                                "no force_v and displacement_v; telemetry of a gyro is not diagnosed yet",
-                                "give a bench recording, or use hemi calibrate and hemi allan");
+int diagnose_bench(const DiagnoseOptions& options, const recording::Recording& recording) {
   const std::string json_path = (fs::path(options.directory) / "diagnosis.json").string();
   const std::string model_path = (fs::path(options.directory) / "corrected.model.json").string();
   std::vector<std::string> inputs = {options.recording};
@@ -128,17 +128,51 @@ int diagnose(const DiagnoseOptions& options) {
   return exit_good;
 }
 
+// The kind of recording decides what can be asked of it.
+int diagnose(const DiagnoseOptions& options) {
+  if (holds_settled_points(options.recording))
+    return diagnose_table(
+        {.points = options.recording, .directory = options.directory, .json = options.json});
+  if (is_capture(options.recording))
+    return diagnose_capture({.capture = options.recording,
+                             .model = options.model,
+                             .telemetry = options.telemetry,
+                             .directory = options.directory,
+                             .adc_rate_hz = options.adc_rate_hz,
+                             .json = options.json});
+  const auto recording = recording::read_recording(options.recording);
+  if (recording.find("force_v") != nullptr && recording.find("displacement_v") != nullptr)
+    return diagnose_bench(options, recording);
+  if (holds_telemetry(recording))
+    return diagnose_telemetry(recording, {options.model, make_directory(options.directory), options.json});
+  if (holds_case_and_rate(recording)) {
+    print_notes(recording.notes);
+    return diagnose_case(recording, {.directory = options.directory, .json = options.json});
+  }
+  throw recording::InputError(
+      {.path = options.recording}, "holds nothing that can be diagnosed",
+      "give telemetry (frequency_hz, drive_v, ...), rate_dph with case_temp_degc, force_v with "
+      "displacement_v, raw samples, or a table of settled points");
+}
+
 }  // namespace
 
 void add_diagnose(CLI::App& app, Job& job) {
   auto options = std::make_shared<DiagnoseOptions>();
-  auto* command = app.add_subcommand("diagnose", "What a resonator does that its model leaves out");
-  command->add_option("recording", options->recording, "bench recording: time_s, force_v, displacement_v")
-      ->required();
-  command->add_option("-m,--model", options->model,
-                      "instrument model with a bench part; without it a linear one is fitted");
+  auto* command = app.add_subcommand("diagnose", "What an instrument does that its model leaves out");
   command
-      ->add_option("-o,--output", options->directory, "directory for diagnosis.json and corrected.model.json")
+      ->add_option("recording", options->recording,
+                   "telemetry, bench recording (force_v, displacement_v), raw capture or settled points")
+      ->required();
+  command->add_option(
+      "-m,--model", options->model,
+      "instrument model; telemetry needs one, for a bench recording a linear one is fitted without it");
+  command->add_option("--telemetry", options->telemetry, "records of the same run, beside a raw capture");
+  command->add_option("--adc-rate", options->adc_rate_hz, "samples a second of a raw capture [Hz]")
+      ->check(positive_number());
+  command
+      ->add_option("-o,--output", options->directory,
+                   "directory for diagnosis.json, corrected.model.json and report.html")
       ->capture_default_str();
   const auto finite = number_between(-1e300, 1e300);
   command->add_option("--from", options->from_s, "start of the part that is fitted [s]")->check(finite);
@@ -148,7 +182,9 @@ void add_diagnose(CLI::App& app, Job& job) {
   command->add_option("--heldout-to", options->heldout_to_s, "its end [s]")->check(finite);
   command->add_flag("--json", options->json, "diagnosis as JSON on standard output too");
   command->footer(
-      "Example: hemi diagnose silverbox.csv --from 67.175 --heldout-from 0.164 --heldout-to 66.19 -o out");
+      "Example: hemi diagnose chamber.csv --model HRG-A17.model.json -o out\n"
+      "         hemi diagnose run.raw.csv --telemetry run.csv --model HRG-A17.model.json -o out\n"
+      "         hemi diagnose silverbox.csv --from 67.175 --heldout-from 0.164 --heldout-to 66.19 -o out");
   command->callback([options, &job] { job = [options] { return diagnose(*options); }; });
 }
 

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "cli/commands.hpp"
+#include "cli/invocation.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/interrupt.hpp"
 #include "golden/calibration/input_error.hpp"
@@ -27,6 +28,7 @@ int main(int argc, char** argv) {
       "Exit codes: 0 good, 1 difference found, 2 bad input, 3 internal error, 130 interrupted.\n"
       "hemi COMMAND --help shows the options of a command, with an example.");
   cli::Job job;
+  cli::set_invocation(argc, argv);
   cli::add_run(app, job);
   cli::add_compare(app, job);
   cli::add_calibrate(app, job);
@@ -36,6 +38,9 @@ int main(int argc, char** argv) {
   cli::add_simulate(app, job);
   cli::add_effects(app, job);
   cli::add_diagnose(app, job);
+  cli::add_report(app, job);
+  cli::add_export(app, job);
+  cli::add_prove(app, job);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

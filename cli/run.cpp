@@ -9,9 +9,11 @@
 #include "cli/engines.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
+#include "cli/pages.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/sidecar.hpp"
 #include "cli/recording/write.hpp"
+#include "cli/run_port.hpp"
 #include "cli/summary.hpp"
 
 namespace hemi::cli {
@@ -19,9 +21,12 @@ namespace {
 
 struct RunOptions {
   std::string recording;
+  std::string port;
+  double seconds = 10.0;
   std::string engine = "hls";
   std::string model;
   std::string output;
+  std::string report;
   std::optional<double> frequency_hz;
   std::optional<double> window_s;
   std::optional<double> adc_rate_hz;
@@ -69,13 +74,18 @@ void finish(recording::Recording out, const RunOptions& options, recording::Json
     keep_shared_sidecar(out, options);
     recording::write_file(options.output, out);
   }
+  summary["engine"] = options.engine;
+  if (!options.output.empty()) summary["output"] = options.output;
+  std::string page;
+  if (!options.report.empty())
+    page = write_run_page(options.report, out, summary, options.recording, options.engine, text);
   if (options.json) {
-    summary["engine"] = options.engine;
-    if (!options.output.empty()) summary["output"] = options.output;
+    if (!page.empty()) summary["report"] = page;
     fmt::print("{}\n", recording::json_text(summary, 2));
   } else {
     fmt::print("{}", text);
     if (!options.output.empty()) fmt::print("wrote {}\n", options.output);
+    if (!page.empty()) fmt::print("wrote {}\n", page);
   }
 }
 
@@ -149,18 +159,40 @@ int run_recording(const RunOptions& options, const std::optional<recording::Inst
   return exit_good;
 }
 
+int run_board(RunOptions options, const std::optional<recording::InstrumentModel>& model) {
+  options.engine = "board";
+  options.recording = options.port;
+  const PortRun run = run_port({options.port, options.seconds, options.frequency_hz, options.window_s},
+                               model ? &*model : nullptr);
+  std::vector<double> time_s(run.records.size());
+  for (std::size_t i = 0; i < time_s.size(); ++i) time_s[i] = output_time_s(i, run.setup);
+  auto out = with_provenance(to_recording(run.records, time_s, run.setup, false), options,
+                             model ? model->device : std::string());
+  for (const auto& fault : run.faults) fmt::print(stderr, "note: {}: {}\n", options.port, fault);
+  if (!run.faults.empty()) out.sidecar["board_faults"] = run.faults;
+  const RunSummary summary = summarise_capture(out, options.from_s, options.to_s);
+  recording::Json json = to_json(summary);
+  json["board_faults"] = run.faults;
+  finish(out, options, json,
+         fmt::format("{}: {} records at {:.6g} Hz\n{}", options.port, run.records.size(),
+                     1.0 / run.setup.output_period_s, to_text(summary)));
+  return exit_good;
+}
+
 int run(const RunOptions& options) {
   check_engine_name(options.engine);
   check_stretch(options.from_s, options.to_s);
-  refuse_settled_points(options.recording);
+  if (options.port.empty()) refuse_settled_points(options.recording);
   if (std::filesystem::path(options.output).extension() == ".json") {
     throw recording::OutputError(options.output, "the ending belongs to the file beside an output",
                                  "name the output .csv or .h5");
   }
   refuse_overwriting({options.output, sidecar_of_output(options)}, {options.recording, options.model});
-  refuse_overwriting({options.output}, {recording::read_sidecar(options.recording).path});
+  if (options.port.empty())
+    refuse_overwriting({options.output}, {recording::read_sidecar(options.recording).path});
   std::optional<recording::InstrumentModel> model;
   if (!options.model.empty()) model = recording::read_model(options.model);
+  if (!options.port.empty()) return run_board(options, model);
   if (recording::is_raw(options.recording)) return run_capture(options, model);
   return run_recording(options, model);
 }
@@ -171,10 +203,17 @@ void add_run(CLI::App& app, Job& job) {
   auto options = std::make_shared<RunOptions>();
   auto* command =
       app.add_subcommand("run", "A recording through one engine: frequency, temperature, compensated rate");
-  command
-      ->add_option("recording", options->recording,
-                   "raw capture (adc_x, adc_y; CSV, HDF5, WAV, FLAC) or telemetry (frequency_hz, rate_dph)")
-      ->required();
+  auto* recording = command->add_option(
+      "recording", options->recording,
+      "raw capture (adc_x, adc_y; CSV, HDF5, WAV, FLAC) or telemetry (frequency_hz, rate_dph)");
+  auto* port =
+      command
+          ->add_option("--port", options->port,
+                       "instead of a recording: serial line of the reference design, such as /dev/ttyUSB1")
+          ->excludes(recording);
+  command->add_option("--seconds", options->seconds, "how long to record from --port; default 10")
+      ->check(positive_number())
+      ->needs(port);
   command->add_option("-e,--engine", options->engine, "ideal, golden, hls, rtl or systemc")
       ->capture_default_str();
   command->add_option("-m,--model", options->model, "instrument model (hemi-model/1)");
@@ -191,9 +230,13 @@ void add_run(CLI::App& app, Job& job) {
       ->check(positive_number());
   command->add_option("--from", options->from_s, "start of the stretch that the summary speaks of [s]");
   command->add_option("--to", options->to_s, "end of it [s]");
+  command->add_option("--report", options->report, report_option_help);
   command->add_flag("--json", options->json, "summary as JSON");
   command->footer("Example: hemi run bell.wav --engine rtl --frequency 3621 --from 0.5 --to 2.5 -o bell.csv");
-  command->callback([options, &job] { job = [options] { return run(*options); }; });
+  command->callback([options, &job] {
+    if (options->recording.empty() && options->port.empty()) throw CLI::RequiredError("recording");
+    job = [options] { return run(*options); };
+  });
 }
 
 }  // namespace hemi::cli

@@ -24,8 +24,14 @@ constexpr ac_o_mode ac_overflow(Overflow mode) {
 
 }  // namespace detail
 
+/// ac_fixed, but zero where nothing else is said: Siemens' own leaves the word undefined.
 template <int W, int I, Round R = Round::floor, Overflow O = Overflow::wrap>
-using Fixed = ac_fixed<W, I, true, detail::ac_rounding(R), detail::ac_overflow(O)>;
+struct Fixed : ac_fixed<W, I, true, detail::ac_rounding(R), detail::ac_overflow(O)> {
+  using Vendor = ac_fixed<W, I, true, detail::ac_rounding(R), detail::ac_overflow(O)>;
+  Fixed() : Vendor(0) {}
+  Fixed(const Vendor& x) : Vendor(x) {}
+  using Vendor::Vendor;
+};
 
 template <int W, int I, ac_q_mode Q, ac_o_mode O>
 struct fixed_traits<ac_fixed<W, I, true, Q, O>> {
@@ -34,6 +40,9 @@ struct fixed_traits<ac_fixed<W, I, true, Q, O>> {
   static constexpr int integer = I;
   static constexpr int fraction = W - I;
 };
+
+template <int W, int I, Round R, Overflow O>
+struct fixed_traits<Fixed<W, I, R, O>> : fixed_traits<typename Fixed<W, I, R, O>::Vendor> {};
 
 template <int W, int I, ac_q_mode Q, ac_o_mode O>
 std::int64_t raw(const ac_fixed<W, I, true, Q, O>& x) {
@@ -68,6 +77,9 @@ struct AcSaturationTest<ac_fixed<W, I, true, Q, O>> {
     return rounded != ac_fixed<W, I, true, Q, O>(rounded);
   }
 };
+
+template <int W, int I, Round R, Overflow O>
+struct AcSaturationTest<Fixed<W, I, R, O>> : AcSaturationTest<typename Fixed<W, I, R, O>::Vendor> {};
 
 }  // namespace detail
 

@@ -25,8 +25,14 @@ constexpr ap_o_mode ap_overflow(Overflow mode) {
 
 }  // namespace detail
 
+/// ap_fixed, but zero where nothing else is said: AMD's own leaves the word undefined.
 template <int W, int I, Round R = Round::floor, Overflow O = Overflow::wrap>
-using Fixed = ap_fixed<W, I, detail::ap_rounding(R), detail::ap_overflow(O)>;
+struct Fixed : ap_fixed<W, I, detail::ap_rounding(R), detail::ap_overflow(O)> {
+  using Vendor = ap_fixed<W, I, detail::ap_rounding(R), detail::ap_overflow(O)>;
+  Fixed() : Vendor(0) {}
+  Fixed(const Vendor& x) : Vendor(x) {}
+  using Vendor::Vendor;
+};
 
 template <int W, int I, ap_q_mode Q, ap_o_mode O, int N>
 struct fixed_traits<ap_fixed_base<W, I, true, Q, O, N>> {
@@ -38,6 +44,9 @@ struct fixed_traits<ap_fixed_base<W, I, true, Q, O, N>> {
 
 template <int W, int I, ap_q_mode Q, ap_o_mode O, int N>
 struct fixed_traits<ap_fixed<W, I, Q, O, N>> : fixed_traits<ap_fixed_base<W, I, true, Q, O, N>> {};
+
+template <int W, int I, Round R, Overflow O>
+struct fixed_traits<Fixed<W, I, R, O>> : fixed_traits<typename Fixed<W, I, R, O>::Vendor> {};
 
 template <int W, int I, ap_q_mode Q, ap_o_mode O, int N>
 std::int64_t raw(const ap_fixed_base<W, I, true, Q, O, N>& x) {
@@ -73,6 +82,9 @@ struct ApSaturationTest<ap_fixed<W, I, Q, O>> {
     return rounded != ap_fixed<W, I, Q, O>(rounded);
   }
 };
+
+template <int W, int I, Round R, Overflow O>
+struct ApSaturationTest<Fixed<W, I, R, O>> : ApSaturationTest<typename Fixed<W, I, R, O>::Vendor> {};
 
 }  // namespace detail
 

@@ -2,7 +2,7 @@
 
 /// Operand, shift, sum, quantise: four clocks from an instruction to its word, one instruction a clock, nothing
 /// waits. dst = quantise(a +- (b >>> shift, floor or half up)); b from the state memory or from a port.
-/// Area on the iCE40 UP5K (docs/fpga.md): 649 LUT4, 304 flip-flops.
+/// Area on the iCE40 UP5K (docs/fpga.md): 649 LUT4, 304 flip-flops; 32 MHz between registers.
 module hemi_datapath (
     input  logic                       clk_i,          // clock
     input  logic                       rst_ni,         // synchronous reset, active low

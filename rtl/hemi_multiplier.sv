@@ -6,7 +6,7 @@
 ///
 /// Each partial product has exactly the bits that its factors need: Yosys 0.23 leaves the upper bits of a wider
 /// register undriven when it packs it into a multiplier block.
-/// Area on the iCE40 UP5K (docs/fpga.md): 181 LUT4, 81 flip-flops, 4 multipliers.
+/// Area on the iCE40 UP5K (docs/fpga.md): 181 LUT4, 81 flip-flops, 4 multipliers; 40 MHz between registers.
 module hemi_multiplier (
     input  logic        clk_i,     // clock
     input  logic [31:0] a_i,       // wide factor, signed

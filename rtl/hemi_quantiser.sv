@@ -2,7 +2,7 @@
 
 /// An exact sum becomes a word: clipped to its width, or its low bits with the sign drawn out; a residual is 0 when the
 /// sum before it was clipped.
-/// Area on the iCE40 UP5K (docs/fpga.md): 219 LUT4, 1 flip-flop.
+/// Area on the iCE40 UP5K (docs/fpga.md): 219 LUT4, 1 flip-flop; 43 MHz between registers.
 module hemi_quantiser (
     input  logic                clk_i,      // clock
     input  logic [        56:0] sum_i,      // exact, signed

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// Holds one sample from its arrival until the program has read it.
-/// Area on the iCE40 UP5K (docs/fpga.md): 26 LUT4, 35 flip-flops.
+/// Area on the iCE40 UP5K (docs/fpga.md): 26 LUT4, 35 flip-flops; 72 MHz between registers.
 module hemi_sample_port (
     input  logic               clk_i,        // clock
     input  logic               rst_ni,       // synchronous reset, active low

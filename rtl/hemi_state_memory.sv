@@ -2,7 +2,7 @@
 
 /// 256 words of 54 bits, two read ports and one write port: two copies of block RAM on most devices. The
 /// schedule never reads a word in the clock of its write, so no order of the two has to be kept.
-/// Area on the iCE40 UP5K (docs/fpga.md): 1 LUT4, 8 block RAMs.
+/// Area on the iCE40 UP5K (docs/fpga.md): 1 LUT4, 8 block RAMs; 122 MHz between registers.
 module hemi_state_memory (
     input  logic                   clk_i,        // clock
     input  logic [hemi_pkg::AddressBits-1:0] a_address_i,  // first operand

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// Live status bits: raised by instructions and, once a tick, by the samples of that tick; cleared when read.
-/// Area on the iCE40 UP5K (docs/fpga.md): 42 LUT4, 23 flip-flops.
+/// Area on the iCE40 UP5K (docs/fpga.md): 42 LUT4, 23 flip-flops; 100 MHz between registers.
 module hemi_status (
     input  logic                  clk_i,       // clock
     input  logic                  rst_ni,      // synchronous reset, active low

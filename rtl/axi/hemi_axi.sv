@@ -112,7 +112,9 @@ module hemi_axi (
       .tdata_o (m_axis_dac_tdata)
   );
 
-  hemi_axi_store i_store (
+  hemi_axi_store #(
+      .AddressBits(hemi_axi_pkg::StoreBits)
+  ) i_store (
       .clk_i          (aclk),
       .rst_ni         (aresetn),
       .clearing_o     (clearing),

@@ -3,6 +3,7 @@
 /// DAC words as a stream without loss: at most two samples are on their way through the core or waiting, and only a
 /// beat that was taken makes room for another. One beat waits here, the second on the core's ports, which hold their
 /// words until the next push. A sink that is always ready never stops a sample.
+/// Area on the iCE40 UP5K (docs/fpga.md): 8 LUT4, 68 flip-flops; 92 MHz between registers.
 module hemi_axi_dac (
     input  logic                                    clk_i,     // clock
     input  logic                                    rst_ni,    // synchronous reset, active low

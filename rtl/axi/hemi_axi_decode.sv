@@ -2,6 +2,7 @@
 
 /// What an address names, before asking whether the access is allowed: SlaveError where it is no multiple of four,
 /// DecodeError where nothing is there. Combinational.
+/// Area on the iCE40 UP5K (docs/fpga.md): 31 LUT4; 45 MHz between registers.
 module hemi_axi_decode (
     input  logic [hemi_axi_pkg::AddressBits-1:0] address_i,
     output logic [                          1:0] response_o

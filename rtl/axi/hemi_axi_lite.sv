@@ -6,6 +6,7 @@
 /// A register has 64 bits, sign-extended, in two halves. Writing the low half keeps it here; writing the high half of
 /// the same register commits both to the core in one clock. A high half without its low half before it is an error and
 /// writes nothing. Write strobes other than 1111 are errors, too. Errors change nothing.
+/// Area on the iCE40 UP5K (docs/fpga.md): 265 LUT4, 221 flip-flops; 30 MHz between registers.
 module hemi_axi_lite (
     input  logic                                 clk_i,              // clock
     input  logic                                 rst_ni,             // synchronous reset, active low

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/diagnosis_input.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cli/recording/error.hpp"
+
+namespace hemi::cli {
+namespace {
+
+using diagnosis::kOutputNames;
+using diagnosis::kOutputs;
+using diagnosis::Telemetry;
+using Eigen::Index;
+using Eigen::VectorXd;
+constexpr double kPowerCut_s = 30.0;
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+// Where every row lies on the even grid of `decimation` samples a place.
+struct Grid {
+  std::vector<Index> place;
+  Index places = 0;
+};
+
+Grid grid_of(const recording::Recording& recording, std::size_t decimation) {
+  const auto& time = recording.find("time_s")->values;
+  const double step = static_cast<double>(decimation) / recording.sample_rate_hz;
+  Grid grid;
+  for (const double t : time) {
+    // Half a sample later, so that jitter does not move a row to the place before.
+    const auto at = static_cast<Index>((t - time[0] + 0.5 / recording.sample_rate_hz) / step);
+    grid.place.push_back(std::max<Index>(at, 0));
+    grid.places = std::max(grid.places, grid.place.back() + 1);
+  }
+  return grid;
+}
+
+VectorXd on_grid(const std::vector<double>& values, const Grid& grid) {
+  VectorXd sum = VectorXd::Zero(grid.places), count = VectorXd::Zero(grid.places);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isnan(values[i])) {
+      sum[grid.place[i]] += values[i];
+      count[grid.place[i]] += 1.0;
+    }
+  return (count.array() > 0.0).select(sum.array() / count.array().max(1.0), kNothing);
+}
+
+// Missing values by a straight line between their neighbours, or held.
+void fill(VectorXd& x, bool straight) {
+  Index last = -1;
+  for (Index i = 0; i < x.size(); ++i) {
+    if (std::isnan(x[i])) continue;
+    for (Index k = last + 1; k < i; ++k) {
+      if (last < 0)
+        x[k] = x[i];
+      else if (straight)
+        x[k] = x[last] + (x[i] - x[last]) * static_cast<double>(k - last) / static_cast<double>(i - last);
+      else
+        x[k] = x[last];
+    }
+    last = i;
+  }
+  for (Index k = last + 1; k < x.size(); ++k) x[k] = last < 0 ? 0.0 : x[last];
+}
+
+// Rows in stretches of at least kPowerCut_s without any output.
+Eigen::Array<bool, Eigen::Dynamic, 1> powered_rows(const Telemetry& t) {
+  Eigen::Array<bool, Eigen::Dynamic, 1> powered =
+      Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(t.rows(), true);
+  const auto cut = static_cast<Index>(kPowerCut_s / t.step_s);
+  Index begin = 0;
+  for (Index i = 0; i <= t.rows(); ++i) {
+    const bool silent = i < t.rows() && std::ranges::all_of(kOutputs, [&](diagnosis::Output output) {
+                          return !t.has(output) || std::isnan(t[output][i]);
+                        });
+    if (silent) continue;
+    if (i - begin >= std::max<Index>(cut, 1)) powered.segment(begin, i - begin) = false;
+    begin = i + 1;
+  }
+  return powered;
+}
+
+class Reader {
+ public:
+  Reader(const recording::Recording& recording, const Grid& grid, DiagnosisInput& input)
+      : recording_(recording), grid_(grid), input_(input) {}
+
+  VectorXd input(const char* name, double rest, bool straight, bool* given = nullptr) {
+    const auto* channel = recording_.find(name);
+    if (given != nullptr) *given = channel != nullptr;
+    if (channel == nullptr) {
+      input_.absent.emplace_back(name);
+      return VectorXd::Constant(grid_.places, rest);
+    }
+    VectorXd x = on_grid(channel->values, grid_);
+    fill(x, straight);
+    return x;
+  }
+
+ private:
+  const recording::Recording& recording_;
+  const Grid& grid_;
+  DiagnosisInput& input_;
+};
+
+}  // namespace
+
+DiagnosisInput telemetry_of(const recording::Recording& recording, const recording::InstrumentModel& model,
+                            std::size_t most_rows) {
+  DiagnosisInput input;
+  const std::size_t decimation = std::max<std::size_t>(1, (recording.rows() + most_rows - 1) / most_rows);
+  if (decimation > 1)
+    input.notes.push_back(fmt::format("{} rows are averaged into one for effects slower than {:.3g} s",
+                                      decimation,
+                                      2.0 * static_cast<double>(decimation) / recording.sample_rate_hz));
+  const Grid grid = grid_of(recording, decimation);
+  Telemetry& t = input.telemetry;
+  t.step_s = static_cast<double>(decimation) / recording.sample_rate_hz;
+  Reader reader(recording, grid, input);
+  t.case_degc = reader.input("case_temp_degc", 20.0, true, &t.has_case);
+  t.board_degc = reader.input("board_temp_degc", 25.0, true, &t.has_board);
+  t.rate_in_dph = reader.input("rate_in_dph", 0.0, false);
+  t.accel_g = reader.input("accel_g", 0.0, false, &t.has_accel);
+  t.supply_v = reader.input("supply_v", 1.0, false, &t.has_supply);
+  t.trim_v = reader.input("quadrature_trim_v", 0.0, false);
+  t.amplitude = reader.input("amplitude", model.amplitude_setpoint, false);
+  for (const auto output : kOutputs) {
+    const auto* channel = recording.find(kOutputNames[place(output)]);
+    if (channel == nullptr)
+      input.absent.emplace_back(kOutputNames[place(output)]);
+    else
+      t.outputs[place(output)] = on_grid(channel->values, grid);
+  }
+  t.powered = powered_rows(t);
+  return input;
+}
+
+diagnosis::NominalModel nominal_of(const recording::InstrumentModel& model,
+                                   const recording::Recording& recording) {
+  const auto need = [&](bool present, const char* part, const char* channel) {
+    if (present || recording.find(channel) == nullptr) return;
+    throw recording::InputError({.path = model.path, .channel = part},
+                                fmt::format("is missing, which {} needs", channel),
+                                "calibrate the instrument first, or leave the channel out");
+  };
+  need(model.frequency.has_value(), "frequency", "frequency_hz");
+  need(model.thermal_time_constant_s.has_value(), "thermal", "frequency_hz");
+  need(model.bias.has_value(), "bias", "rate_dph");
+  need(model.frequency.has_value(), "frequency", "rate_dph");
+  need(model.drive.has_value(), "drive", "drive_v");
+  need(model.quadrature.has_value(), "quadrature", "quadrature_v");
+  diagnosis::NominalModel nominal;
+  if (model.frequency)
+    nominal.frequency_hz = {model.frequency->reference_degc, model.frequency->coefficients_hz};
+  nominal.time_constant_s = model.thermal_time_constant_s.value_or(0.0);
+  if (model.bias) {
+    nominal.bias_reference_hz = model.bias->reference_hz;
+    nominal.bias_dph = model.bias->terms_dph;
+  }
+  nominal.scale_factor = model.scale_factor;
+  if (model.drive) nominal.drive_v = {model.drive->reference_degc, model.drive->coefficients_v};
+  if (model.quadrature)
+    nominal.quadrature_v = {model.quadrature->reference_degc, model.quadrature->coefficients_v};
+  constexpr const char* kNoiseKeys[] = {"frequency_hz_rthz", "drive_v_rthz", "quadrature_v_rthz",
+                                        "rate_dph_rthz"};
+  for (const auto output : kOutputs) {
+    const auto found = model.noise.find(kNoiseKeys[place(output)]);
+    if (found == model.noise.end()) continue;
+    // One-sided density r / f of a walk: variance 2 pi^2 r^2 a second.
+    nominal.noise[place(output)] = {found->second.flicker, found->second.random_walk * std::sqrt(2.0) * M_PI};
+  }
+  return nominal;
+}
+
+}  // namespace hemi::cli

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "golden/concealed/instrument.hpp"
+
+namespace hemi::concealed {
+
+// All: rate-independent memory of x, output scaled to a peak-to-peak value of 1 over the recording, 0 where x
+// never moves.
+
+/// Preisach: relays over a bell-shaped density of thresholds; `width` mean half-width of a relay, `spread` of
+/// the density, both as share of x's half range. Starts with the relays below the start up, the others down.
+Series preisach(const Series& x, double width, double spread);
+
+/// Duhem: dy = c (dx - y |dx|), x scaled to [-1, 1].
+Series duhem(const Series& x, double c);
+
+/// Bouc-Wen: dz = c (dx - (b |dx| z |z| + (1 - b) dx z^2)), x scaled to [-1, 1], 0.5 < b <= 1.
+Series bouc_wen(const Series& x, double c, double b);
+
+}  // namespace hemi::concealed

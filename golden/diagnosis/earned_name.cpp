@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "golden/diagnosis/earned_name.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "golden/diagnosis/effect_search.hpp"
+
+namespace hemi::diagnosis {
+namespace {
+
+using calibration::RowRange;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+constexpr Index kFolds = 8;
+constexpr Index kBootstrapBlocks = 40;
+constexpr double kNormal95 = 1.959963984540054;
+constexpr double kDetectable = 5.0;
+constexpr double kShapeStep = 0.01;
+
+// Baseline, members' columns, then what a hundredth of each shape parameter changes, per unit of its log.
+struct Extended {
+  Reduced rows;
+  std::vector<Index> shapes;  // first shape column of each member
+};
+
+Extended extended(Hypotheses& h, const std::vector<Member>& members, const HypothesisFit& fit) {
+  Extended result;
+  std::vector<Reduced> moved;
+  Index next = fit.coefficients.size();
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    result.shapes.push_back(next);
+    const auto& family = h.families()[members[m].family];
+    const Reduced& here = h.columns(members[m]);
+    const VectorXd c = fit.coefficients.segment(fit.first[m], here[0].cols());
+    for (std::size_t d = 0; d < family.spacing.size(); ++d, ++next) {
+      Member other = members[m];
+      other.shape[d] *= 1.0 + kShapeStep;
+      const Reduced there = h.columns(other);
+      Reduced column;
+      for (std::size_t k = 0; k < kOutputs.size(); ++k)
+        column[k] = (there[k] - here[k]) * c / std::log1p(kShapeStep);
+      moved.push_back(std::move(column));
+    }
+  }
+  const Reduced design = h.design(members);
+  std::vector<const Reduced*> parts = {&design};
+  for (const auto& column : moved) parts.push_back(&column);
+  result.rows = joined(parts);
+  return result;
+}
+
+// Least squares on some rows of whitened columns.
+class Solver {
+ public:
+  Solver(const MatrixXd& white, const VectorXd& prior)
+      : scale_(white.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse()) {
+    normal_ = scale_.asDiagonal() * (white.transpose() * white) * scale_.asDiagonal();
+    normal_.diagonal() += scale_.cwiseAbs2().cwiseProduct(prior);
+    normal_.diagonal().array() += 1e-12;
+  }
+  VectorXd solve(const VectorXd& right) const {
+    return scale_.asDiagonal() * normal_.ldlt().solve(scale_.asDiagonal() * right);
+  }
+  MatrixXd covariance() const {
+    return scale_.asDiagonal() * normal_.ldlt().solve(MatrixXd::Identity(scale_.size(), scale_.size())) *
+           scale_.asDiagonal();
+  }
+
+ private:
+  VectorXd scale_;
+  MatrixXd normal_;
+};
+
+VectorXd padded(const VectorXd& prior, Index size) {
+  VectorXd result = VectorXd::Zero(size);
+  result.head(prior.size()) = prior;
+  return result;
+}
+
+// Block number of every stacked row.
+std::vector<Index> block_numbers(const RowSpace& space) {
+  std::vector<Index> numbers;
+  for (const Output output : kOutputs)
+    numbers.insert(numbers.end(), space.blocks(output).begin(), space.blocks(output).end());
+  return numbers;
+}
+
+MatrixXd rows_where(const MatrixXd& from, const std::vector<Index>& number, Index low, Index high,
+                    bool inside) {
+  std::vector<Index> kept;
+  for (std::size_t i = 0; i < number.size(); ++i)
+    if ((number[i] >= low && number[i] < high) == inside) kept.push_back(static_cast<Index>(i));
+  return from(kept, Eigen::all);
+}
+
+// Residual of every row, its own block left out of the fit.
+Reduced left_out(const Hypotheses& h, const Reduced& design, const Noise& noise) {
+  const RowSpace& space = h.space();
+  const MatrixXd white = whiten(space, noise, design);
+  const VectorXd y = whiten(space, noise, h.data());
+  const auto numbers = block_numbers(space);
+  const VectorXd prior = h.prior_precision(design[0].cols());
+  Reduced residual = h.data();
+  for (Index fold = 0; fold < kFolds; ++fold) {
+    const Index low = fold * space.block_count() / kFolds, high = (fold + 1) * space.block_count() / kFolds;
+    const MatrixXd rest = rows_where(white, numbers, low, high, false);
+    const VectorXd c = Solver(rest, prior).solve(rest.transpose() * rows_where(y, numbers, low, high, false));
+    for (const Output output : kOutputs) {
+      const std::size_t k = place(output);
+      const auto& blocks = space.blocks(output);
+      for (std::size_t i = 0; i < blocks.size(); ++i)
+        if (blocks[i] >= low && blocks[i] < high)
+          residual[k](static_cast<Index>(i), 0) -= design[k].row(static_cast<Index>(i)).dot(c);
+    }
+  }
+  return residual;
+}
+
+std::vector<RowRange> even_blocks(Index rows) {
+  std::vector<RowRange> blocks;
+  const Index count = std::min(kBootstrapBlocks, rows);
+  for (Index b = 0; b < count; ++b) {
+    const Index begin = b * rows / count;
+    blocks.push_back({begin, (b + 1) * rows / count - begin});
+  }
+  return blocks;
+}
+
+}  // namespace
+
+std::vector<Improvement> improvements(Hypotheses& h, const std::vector<Member>& members,
+                                      const HypothesisFit& fit) {
+  std::vector<Improvement> list;
+  const HypothesisFit baseline = h.fit({}, fit.noise);
+  const Reduced before = left_out(h, h.baseline_rows(), fit.noise);
+  const Reduced after = left_out(h, extended(h, members, fit).rows, fit.noise);
+  for (const Output output : kOutputs) {
+    const std::size_t c = place(output);
+    const bool acts =
+        std::ranges::any_of(members, [&](const Member& m) { return h.columns(m)[c].squaredNorm() > 0.0; });
+    const Index rows = h.space().rows(output);
+    if (!acts || rows < kFolds) continue;
+    const auto blocks = even_blocks(rows);
+    Improvement entry;
+    entry.output = output;
+    entry.train = bootstrap_gain(baseline.residual[c].col(0), fit.residual[c].col(0), blocks, 11);
+    entry.held_out = bootstrap_gain(before[c].col(0), after[c].col(0), blocks, 12);
+    const auto noise = coloured_noise(fit.noise[c], h.space().block_count());
+    const auto white = [&](const Reduced& residual) -> VectorXd {
+      return whiten(residual[c], h.space().blocks(output), noise).col(0);
+    };
+    entry.held_out_white = bootstrap_gain(white(before), white(after), blocks, 13);
+    entry.floor_rms = std::sqrt(coloured_noise(h.expected()[c], h.space().block_count()).total_variance());
+    list.push_back(entry);
+  }
+  return list;
+}
+
+std::vector<std::vector<Interval>> intervals(Hypotheses& h, const std::vector<Member>& members,
+                                             const HypothesisFit& fit) {
+  const Extended all = extended(h, members, fit);
+  const MatrixXd white = whiten(h.space(), fit.noise, all.rows);
+  const MatrixXd covariance =
+      Solver(white, padded(h.prior_precision(fit.coefficients.size()), white.cols())).covariance();
+  std::vector<std::vector<Interval>> list;
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    const auto& family = h.families()[members[m].family];
+    std::vector<Interval> entries;
+    if (!family.figures) {
+      list.push_back(entries);
+      continue;
+    }
+    const Index count = h.columns(members[m])[0].cols();
+    const VectorXd c = fit.coefficients.segment(fit.first[m], count);
+    const auto shapes = static_cast<Index>(family.spacing.size());
+    std::vector<Index> places;
+    for (Index i = 0; i < count; ++i) places.push_back(fit.first[m] + i);
+    for (Index i = 0; i < shapes; ++i) places.push_back(all.shapes[m] + i);
+    const MatrixXd own = covariance(places, places);
+    const auto figures = [&](const VectorXd& move) {
+      std::vector<double> coefficients(c.begin(), c.end()), shape = members[m].shape;
+      for (Index i = 0; i < count; ++i) coefficients[static_cast<std::size_t>(i)] += move[i];
+      for (Index i = 0; i < shapes; ++i) shape[static_cast<std::size_t>(i)] *= std::exp(move[count + i]);
+      return family.figures(h.simulation(), coefficients, shape);
+    };
+    const auto centre = figures(VectorXd::Zero(count + shapes));
+    MatrixXd gradient(static_cast<Index>(centre.size()), count + shapes);
+    for (Index i = 0; i < count + shapes; ++i) {
+      VectorXd move = VectorXd::Zero(count + shapes);
+      const double step = 0.1 * std::sqrt(std::max(own(i, i), 1e-300));
+      move[i] = i < count ? step : std::min(step, 0.05);
+      const auto up = figures(move), down = figures(-move);
+      for (std::size_t f = 0; f < centre.size(); ++f)
+        gradient(static_cast<Index>(f), i) = (up[f].value - down[f].value) / (2.0 * move[i]);
+    }
+    const VectorXd variance = (gradient * own * gradient.transpose()).diagonal();
+    for (std::size_t f = 0; f < centre.size(); ++f) {
+      const double half = kNormal95 * std::sqrt(std::max(variance[static_cast<Index>(f)], 0.0));
+      entries.push_back({centre[f], centre[f].value - half, centre[f].value + half});
+    }
+    list.push_back(std::move(entries));
+  }
+  return list;
+}
+
+std::optional<double> halves_disagree(Hypotheses& h, const std::vector<Member>& members, std::size_t which,
+                                      const HypothesisFit& fit) {
+  const MatrixXd white = whiten(h.space(), fit.noise, h.design(members));
+  const VectorXd y = whiten(h.space(), fit.noise, h.data());
+  const auto numbers = block_numbers(h.space());
+  const Index half = h.space().block_count() / 2;
+  const Index count = h.columns(members[which])[0].cols();
+  std::array<VectorXd, 2> c;
+  std::array<MatrixXd, 2> covariance;
+  for (const bool first : {true, false}) {
+    const MatrixXd rows = rows_where(white, numbers, 0, half, first);
+    const Solver solver(rows, h.prior_precision(white.cols()));
+    const VectorXd all = solver.solve(rows.transpose() * rows_where(y, numbers, 0, half, first));
+    const std::size_t k = first ? 0 : 1;
+    c[k] = all.segment(fit.first[which], count);
+    covariance[k] = solver.covariance().block(fit.first[which], fit.first[which], count, count);
+  }
+  double most = 0.0;
+  const VectorXd whole = fit.coefficients.segment(fit.first[which], count);
+  for (Index i = 0; i < count; ++i) {
+    const double deviation = std::sqrt(covariance[0](i, i) + covariance[1](i, i));
+    // A half that knows a coefficient to no better than its size says nothing of it.
+    if (deviation > std::abs(whole[i])) continue;
+    most = std::max(most, std::abs(c[0][i] - c[1][i]) / std::max(deviation, 0.1 * std::abs(whole[i])));
+  }
+  return most;
+}
+
+Isolability isolability(Hypotheses& h, const Noise& noise) {
+  Isolability result;
+  EffectSearch search(h);
+  const auto all = search.gains({}, noise);
+  std::map<std::string, std::vector<std::size_t>> by_effect;
+  for (std::size_t i = 0; i < all.members.size(); ++i)
+    by_effect[h.families()[all.members[i].family].effect].push_back(i);
+  std::map<std::string, Index> single;
+  for (const auto& [effect, list] : by_effect) {
+    // The middle of the grid stands for the form: a limit holds for a shape.
+    const auto& first = h.families()[all.members[list[0]].family];
+    const std::size_t i = list[std::min(first.grid.size(), list.size()) / 2];
+    const auto& member = all.members[i];
+    const auto& family = h.families()[member.family];
+    const double square = all.products(all.begin[i], all.begin[i]);
+    if (square <= 0.0) continue;
+    single[effect] = all.begin[i];
+    std::vector<double> c(static_cast<std::size_t>(all.count[i]), 0.0);
+    c[0] = kDetectable / std::sqrt(square);
+    DetectionLimit limit{effect, family.form, {}};
+    if (family.figures) limit.smallest = family.figures(h.simulation(), c, member.shape);
+    result.limits.push_back(std::move(limit));
+  }
+  for (auto a = single.begin(); a != single.end(); ++a)
+    for (auto b = std::next(a); b != single.end(); ++b) {
+      const double overlap =
+          all.products(a->second, b->second) /
+          std::sqrt(all.products(a->second, a->second) * all.products(b->second, b->second));
+      if (std::abs(overlap) > std::sqrt(1.0 - 0.01)) result.pairs.push_back({a->first, b->first, overlap});
+    }
+  return result;
+}
+
+Decoys decoys(Hypotheses& h, const std::vector<Member>& members, const HypothesisFit& fit,
+              std::uint64_t seed) {
+  Decoys result;
+  EffectSearch search(h);
+  std::mt19937_64 random(seed);
+  const MatrixXd own = whiten(h.space(), fit.noise, h.design(members));
+  const VectorXd y = whiten(h.space(), fit.noise, h.data());
+  const Solver solver(own, h.prior_precision(own.cols()));
+  const VectorXd residual = y - own * solver.solve(own.transpose() * y);
+  for (std::size_t f = 0; f < h.families().size(); ++f) {
+    const Member member{f, h.families()[f].grid[h.families()[f].grid.size() / 2]};
+    Reduced moved = h.columns(member);
+    const double turn = std::uniform_real_distribution<double>(0.1, 0.9)(random);
+    for (auto& rows : moved) {
+      if (rows.rows() == 0) continue;
+      const auto by = static_cast<Index>(turn * static_cast<double>(rows.rows()));
+      MatrixXd copy(rows.rows(), rows.cols());
+      copy << rows.bottomRows(rows.rows() - by), rows.topRows(by);
+      rows = copy;
+    }
+    MatrixXd columns = whiten(h.space(), fit.noise, moved);
+    for (Index j = 0; j < columns.cols(); ++j)
+      columns.col(j) -= own * solver.solve(own.transpose() * columns.col(j));
+    const VectorXd right = columns.transpose() * residual;
+    MatrixXd normal = columns.transpose() * columns;
+    normal.diagonal() *= 1.0 + 1e-9;
+    normal.diagonal().array() += 1e-300;
+    ++result.made;
+    if (right.dot(normal.ldlt().solve(right)) > search.penalty(member)) ++result.accepted;
+  }
+  return result;
+}
+
+}  // namespace hemi::diagnosis

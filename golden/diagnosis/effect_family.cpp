@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "golden/diagnosis/effect_family.hpp"
+
+namespace hemi::diagnosis {
+
+bool moves(const Eigen::VectorXd& input, double least) {
+  return input.size() > 0 && input.maxCoeff() - input.minCoeff() > least;
+}
+
+double span(const Eigen::ArrayXd& x) {
+  return x.size() == 0 ? 0.0 : x.maxCoeff() - x.minCoeff();
+}
+
+std::vector<std::vector<double>> geometric_grid(double low, double high, double ratio) {
+  std::vector<std::vector<double>> grid;
+  for (double value = low; value <= high * (1.0 + 1e-9); value *= ratio) grid.push_back({value});
+  return grid;
+}
+
+std::vector<EffectFamily> effect_families(const Simulation& simulation) {
+  std::vector<EffectFamily> all;
+  for (auto* part : {thermal_families, frequency_families, command_families, rate_families})
+    for (auto& family : part(simulation)) all.push_back(std::move(family));
+  return all;
+}
+
+}  // namespace hemi::diagnosis

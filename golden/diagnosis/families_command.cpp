@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drive and quadrature commands.
+#include <Eigen/QR>
+#include <cmath>
+
+#include "golden/diagnosis/effect_family.hpp"
+
+namespace hemi::diagnosis {
+namespace {
+
+using Eigen::ArrayXd;
+using Shape = std::vector<double>;
+constexpr double kHour_s = 3600.0;
+constexpr double kBoardReference_degc = 25.0;
+
+Trace in(Output output, const ArrayXd& column) {
+  Trace trace;
+  trace[output] = column;
+  return trace;
+}
+
+ArrayXd command(const Simulation& s, Output output) {
+  return s.nominal[output];
+}
+
+// Deviation of a polynomial: a bump exp(-((T - Tc) / w)^2 / 2) or a power of scaled T.
+ArrayXd bump(const Simulation& s, const Shape& shape) {
+  const double low = s.smooth_degc.minCoeff();
+  const double range = span(s.smooth_degc);
+  return (-0.5 * ((s.smooth_degc - low - shape[0] * range) / (shape[1] * range)).square()).exp();
+}
+
+std::vector<Shape> bump_grid() {
+  std::vector<Shape> grid;
+  for (const double width : {0.07, 0.13, 0.25})
+    for (double centre = 0.001; centre < 1.01; centre += width == 0.07 ? 0.09 : 0.125)
+      grid.push_back({centre, width});
+  return grid;
+}
+
+// What is left of a deviation after the model's polynomial took its part: that is what can be called
+// beyond it.
+ArrayXd beyond_polynomial(const Simulation& s, const ArrayXd& deviation, std::size_t terms) {
+  Eigen::MatrixXd powers(deviation.size(), static_cast<Eigen::Index>(terms));
+  const ArrayXd t = (s.smooth_degc - s.smooth_degc.mean()) / span(s.smooth_degc);
+  for (Eigen::Index i = 0; i < powers.cols(); ++i) powers.col(i) = t.pow(static_cast<double>(i));
+  const Eigen::VectorXd rest = deviation.matrix();
+  return rest - powers * powers.colPivHouseholderQr().solve(rest);
+}
+
+EffectFamily deviation(const char* effect, Output output, int exponent) {
+  EffectFamily family;
+  family.effect = effect;
+  const bool drive = output == Output::drive;
+  const std::string channel = drive ? "drive" : "quadrature";
+  family.form = channel + (exponent == 0 ? " += A p exp(-((T - Tc) / w)^2 / 2)"
+                                         : " += A p (T - T0)^" + std::to_string(exponent));
+  if (exponent == 0) {
+    family.grid = bump_grid();
+    family.spacing = {1.15, 1.35};
+  }
+  const auto shift = [exponent](const Simulation& s, const Shape& shape) -> ArrayXd {
+    if (exponent == 0) return bump(s, shape);
+    return ((s.smooth_degc - 20.0) / 30.0).pow(exponent);
+  };
+  family.columns = [shift, output](const Simulation& s, const Shape& shape) {
+    return std::vector<Trace>{in(output, s.telemetry->amplitude.array() * shift(s, shape))};
+  };
+  family.figures = [shift, drive](const Simulation& s, const Shape& c, const Shape& shape) {
+    const auto& polynomial = drive ? s.model.drive_v : s.model.quadrature_v;
+    const ArrayXd rest = c[0] * beyond_polynomial(s, shift(s, shape), polynomial.coefficients.size());
+    if (!drive) return std::vector<Figure>{{"span", "V", span(rest)}};
+    // The peak itself is not the deviation from the best polynomial but from the nominal one.
+    return std::vector<Figure>{
+        {"peak", "1", (c[0] * shift(s, shape) / polynomial.at(s.smooth_degc)).abs().maxCoeff()}};
+  };
+  return family;
+}
+
+EffectFamily gas_leak() {
+  EffectFamily family;
+  family.effect = "gas_leak";
+  family.form = "drive = drive (1 + r t)";
+  family.columns = [](const Simulation& s, const Shape&) {
+    return std::vector<Trace>{in(Output::drive, command(s, Output::drive) * s.time_s / kHour_s)};
+  };
+  family.figures = [](const Simulation&, const Shape& c, const Shape&) {
+    return std::vector<Figure>{{"rate", "1/h", c[0]}};
+  };
+  family.possible = [](const Simulation&, const Shape& c, const Shape&) { return c[0] > 0.0; };
+  return family;
+}
+
+EffectFamily damping_nonlinearity(int exponent) {
+  EffectFamily family;
+  family.effect = "damping_nonlinearity";
+  family.form = exponent == 1 ? "drive = drive (1 + c (A - 1))" : "drive = drive (1 + c (A^2 - 1))";
+  family.columns = [exponent](const Simulation& s, const Shape&) {
+    const ArrayXd amplitude = s.telemetry->amplitude;
+    return std::vector<Trace>{in(Output::drive, command(s, Output::drive) * (amplitude.pow(exponent) - 1.0))};
+  };
+  family.figures = [exponent](const Simulation&, const Shape& c, const Shape&) {
+    return std::vector<Figure>{{"relative", "1", exponent == 1 ? 0.5 * c[0] : c[0]}};
+  };
+  return family;
+}
+
+EffectFamily split_in_time() {
+  EffectFamily family;
+  family.effect = "frequency_split";
+  family.form = "quadrature += A r t";
+  family.columns = [](const Simulation& s, const Shape&) {
+    return std::vector<Trace>{in(Output::quadrature, s.telemetry->amplitude.array() * s.time_s / kHour_s)};
+  };
+  family.figures = [](const Simulation& s, const Shape& c, const Shape&) {
+    return std::vector<Figure>{{"span", "V", std::abs(c[0]) * span(s.time_s) / kHour_s}};
+  };
+  return family;
+}
+
+// True amplitude A / (1 + e), e = k (Tb - 25): force commands fall with it, the rate's scale with them.
+EffectFamily pickoff_gain(double rate_sign, bool quadrature) {
+  EffectFamily family;
+  family.effect = "pickoff_gain";
+  family.form = "e = k (Tb - 25), drive /= 1 + e";
+  if (quadrature) family.form += ", quadrature /= 1 + e";
+  if (rate_sign != 0.0) family.form += rate_sign > 0 ? ", rate *= 1 + e" : ", rate /= 1 + e";
+  family.columns = [rate_sign, quadrature](const Simulation& s, const Shape&) {
+    const ArrayXd e = s.board_degc - kBoardReference_degc;
+    Trace trace = in(Output::drive, -command(s, Output::drive) * e);
+    if (quadrature)
+      trace[Output::quadrature] = -(command(s, Output::quadrature) - s.telemetry->trim_v.array()) * e;
+    if (rate_sign != 0.0) trace[Output::rate] = rate_sign * s.telemetry->rate_in_dph.array() * e;
+    return std::vector<Trace>{trace};
+  };
+  family.figures = [](const Simulation&, const Shape& c, const Shape&) {
+    return std::vector<Figure>{{"per_degc", "1/degC", c[0]}};
+  };
+  return family;
+}
+
+void add_drive(std::vector<EffectFamily>& families, const Telemetry& t) {
+  families.push_back(gas_leak());
+  if (moves(t.case_degc, 1.0)) {
+    for (const int exponent : {0, 2, 3})
+      families.push_back(deviation("damping_temperature", Output::drive, exponent));
+  }
+  if (moves(t.amplitude, 1e-3))
+    for (const int exponent : {1, 2}) families.push_back(damping_nonlinearity(exponent));
+  if (!t.has_board || !moves(t.board_degc, 0.5)) return;
+  const bool turning = t.has(Output::rate) && moves(t.rate_in_dph, 1.0);
+  for (const bool quadrature : {false, true}) {
+    families.push_back(pickoff_gain(0.0, quadrature));
+    if (!turning) continue;
+    families.push_back(pickoff_gain(1.0, quadrature));
+    families.push_back(pickoff_gain(-1.0, quadrature));
+  }
+}
+
+}  // namespace
+
+std::vector<EffectFamily> command_families(const Simulation& s) {
+  std::vector<EffectFamily> families;
+  const Telemetry& t = *s.telemetry;
+  if (t.has(Output::drive)) add_drive(families, t);
+  if (!t.has(Output::quadrature)) return families;
+  families.push_back(split_in_time());
+  if (moves(t.case_degc, 1.0))
+    for (const int exponent : {0, 2, 3})
+      families.push_back(deviation("frequency_split", Output::quadrature, exponent));
+  return families;
+}
+
+}  // namespace hemi::diagnosis

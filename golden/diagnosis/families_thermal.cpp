@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// Heat: how the resonator's temperature follows the case's, and what of it reaches the rate.
+#include <cmath>
+
+#include "golden/diagnosis/effect_family.hpp"
+
+namespace hemi::diagnosis {
+namespace {
+
+using Eigen::ArrayXd;
+using Shape = std::vector<double>;
+constexpr double kLagRatio = 1.35;
+constexpr double kRadiusRatio = 1.5;
+constexpr double kLeastSwing_degc = 1.0;
+
+ArrayXd case_behind(const Simulation& s, double tau_s) {
+  const ArrayXd& degc = s.smooth_case_degc;
+  return lag(degc, s.telemetry->step_s, tau_s, degc[0]);
+}
+
+// Play operator (backlash) of half width r: Visintin, Differential Models of Hysteresis (1994), ch. III.
+ArrayXd play(const ArrayXd& x, double r) {
+  ArrayXd y(x.size());
+  double state = x[0];
+  for (Eigen::Index i = 0; i < x.size(); ++i) y[i] = state = std::clamp(state, x[i] - r, x[i] + r);
+  return y;
+}
+
+Trace in_rate(const ArrayXd& column) {
+  Trace trace;
+  trace[Output::rate] = column;
+  return trace;
+}
+
+EffectFamily second_time_constant(const Simulation& s) {
+  EffectFamily family;
+  family.effect = "thermal_second_time_constant";
+  family.form = "T += w (lag(T, tau2) - T)";
+  family.grid = geometric_grid(std::max(90.0, 4.0 * s.telemetry->step_s), 20000.0, kLagRatio);
+  family.spacing = {kLagRatio};
+  family.columns = [](const Simulation& at, const Shape& shape) {
+    const ArrayXd behind = lag(at.smooth_degc, at.telemetry->step_s, shape[0], at.smooth_degc[0]);
+    return std::vector<Trace>{at.thermal(behind - at.smooth_degc)};
+  };
+  family.figures = [](const Simulation&, const Shape& c, const Shape& shape) {
+    return std::vector<Figure>{{"second_time_constant", "s", shape[0]}, {"weight", "1", c[0]}};
+  };
+  // A pole in series has weight one; poles side by side share it.
+  family.possible = [](const Simulation&, const Shape& c, const Shape&) { return c[0] > 0.0 && c[0] < 1.5; };
+  return family;
+}
+
+EffectFamily gradient(const Simulation& s, bool towards_case) {
+  EffectFamily family;
+  family.effect = "thermal_gradient_bias";
+  family.form = towards_case ? "rate += g (case - lag(case, tau_n))" : "rate += g (lag(case, tau_n) - T)";
+  family.grid = geometric_grid(std::max(50.0, 4.0 * s.telemetry->step_s), 20000.0, kLagRatio);
+  family.spacing = {kLagRatio};
+  family.columns = [towards_case](const Simulation& at, const Shape& shape) {
+    const ArrayXd node = case_behind(at, shape[0]);
+    const ArrayXd& degc = at.smooth_case_degc;
+    return std::vector<Trace>{in_rate(towards_case ? ArrayXd(degc - node) : ArrayXd(node - at.smooth_degc))};
+  };
+  family.figures = [](const Simulation&, const Shape& c, const Shape& shape) {
+    return std::vector<Figure>{{"gain", "deg/h per degC", c[0]}, {"node_time_constant", "s", shape[0]}};
+  };
+  return family;
+}
+
+// Radii as shares of the half range of T, one column each.
+EffectFamily hysteresis(std::vector<Shape> grid, bool shaped) {
+  EffectFamily family;
+  family.effect = "thermal_hysteresis";
+  family.form = "rate += sum w_i (play(T, r_i) - T)";
+  if (shaped) family.spacing = Shape(grid[0].size(), kRadiusRatio);
+  family.grid = std::move(grid);
+  const auto radius = [](const Simulation& s, double share) { return 0.5 * share * span(s.smooth_degc); };
+  family.columns = [radius](const Simulation& s, const Shape& radii) {
+    std::vector<Trace> columns;
+    for (const double share : radii)
+      columns.push_back(in_rate(play(s.smooth_degc, radius(s, share)) - s.smooth_degc));
+    return columns;
+  };
+  family.figures = [radius](const Simulation& s, const Shape& c, const Shape& radii) {
+    double height = 0.0;
+    for (std::size_t i = 0; i < radii.size(); ++i) height += 2.0 * radius(s, radii[i]) * c[i];
+    return std::vector<Figure>{{"loop_height", "deg/h", std::abs(height)}};
+  };
+  return family;
+}
+
+// h' = (T' - |T'| h) / L: saturates exponentially, a way L along T after every turn.
+// Source: Duhem's operator; Visintin, Differential Models of Hysteresis (1994), ch. V.
+EffectFamily exponential_hysteresis() {
+  EffectFamily family;
+  family.effect = "thermal_hysteresis";
+  family.form = "rate += w h, h' = (T' - |T'| h) / L";
+  family.grid = geometric_grid(0.05, 1.6, kRadiusRatio);
+  family.spacing = {kRadiusRatio};
+  family.columns = [](const Simulation& s, const Shape& shape) {
+    const double length = 0.5 * shape[0] * span(s.smooth_degc);
+    const ArrayXd& t = s.smooth_degc;
+    ArrayXd h = ArrayXd::Zero(t.size());
+    for (Eigen::Index i = 1; i < t.size(); ++i) {
+      const double step = (t[i] - t[i - 1]) / length;
+      h[i] = (h[i - 1] + step) / (1.0 + std::abs(step));
+    }
+    return std::vector<Trace>{in_rate(h)};
+  };
+  family.figures = [](const Simulation&, const Shape& c, const Shape&) {
+    return std::vector<Figure>{{"loop_height", "deg/h", 2.0 * std::abs(c[0])}};
+  };
+  return family;
+}
+
+// Share of the final rise: towards 1 while rows come, towards 0 while they are missing (power off).
+ArrayXd warmth(const Simulation& s, double t0, bool restarts) {
+  if (!restarts) return 1.0 - (-s.time_s / t0).exp();
+  const double gain = -std::expm1(-s.telemetry->step_s / t0);
+  ArrayXd share(s.time_s.size());
+  double state = 0.0;
+  for (Eigen::Index i = 0; i < share.size(); ++i) {
+    share[i] = state;
+    state += gain * ((s.telemetry->powered[i] ? 1.0 : 0.0) - state);
+  }
+  return share;
+}
+
+EffectFamily self_heating(const Simulation& s, bool restarts) {
+  EffectFamily family;
+  family.effect = "self_heating";
+  family.form =
+      restarts ? "T += rise (1 - exp(-t / t0)), again after every power cut" : "T += rise (1 - exp(-t / t0))";
+  family.grid = geometric_grid(60.0, 2.0 * s.time_s[s.time_s.size() - 1], kLagRatio);
+  family.spacing = {kLagRatio};
+  family.columns = [restarts](const Simulation& at, const Shape& shape) {
+    return std::vector<Trace>{at.thermal(warmth(at, shape[0], restarts))};
+  };
+  family.figures = [](const Simulation&, const Shape& c, const Shape& shape) {
+    return std::vector<Figure>{{"rise", "degC", c[0]}, {"time_constant", "s", shape[0]}};
+  };
+  family.possible = [](const Simulation&, const Shape& c, const Shape&) { return c[0] > 0.0 && c[0] < 30.0; };
+  return family;
+}
+
+}  // namespace
+
+std::vector<EffectFamily> thermal_families(const Simulation& s) {
+  std::vector<EffectFamily> families;
+  const bool frequency = s.telemetry->has(Output::frequency);
+  if (frequency) families.push_back(self_heating(s, false));
+  if (frequency && !s.telemetry->powered.all()) families.push_back(self_heating(s, true));
+  if (!moves(s.telemetry->case_degc, kLeastSwing_degc)) return families;
+  if (frequency) families.push_back(second_time_constant(s));
+  if (!s.telemetry->has(Output::rate)) return families;
+  families.push_back(gradient(s, true));
+  families.push_back(gradient(s, false));
+  families.push_back(hysteresis(geometric_grid(0.02, 0.9, kRadiusRatio), true));
+  families.push_back(hysteresis({{0.04, 0.2}, {0.08, 0.35}, {0.15, 0.5}, {0.3, 0.7}}, true));
+  families.push_back(hysteresis({{0.03, 0.1, 0.3, 0.6}}, false));
+  families.push_back(exponential_hysteresis());
+  return families;
+}
+
+}  // namespace hemi::diagnosis

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "golden/diagnosis/telemetry.hpp"
+
+namespace hemi::diagnosis {
+
+/// What something changes in the outputs, rows of the telemetry; empty where it changes nothing.
+struct Trace {
+  std::array<Eigen::VectorXd, kOutputs.size()> outputs;
+
+  Eigen::VectorXd& operator[](Output output) { return outputs[place(output)]; }
+  const Eigen::VectorXd& operator[](Output output) const { return outputs[place(output)]; }
+};
+
+/// First-order lag of the recording format: y[0] = start, y[i] = y[i-1] + (1 - exp(-step / tau)) (x[i] -
+/// y[i-1]); tau <= 0: x itself.
+Eigen::ArrayXd lag(const Eigen::ArrayXd& x, double step_s, double tau_s, double start);
+
+/// Central differences over the step, one-sided at the ends.
+Eigen::ArrayXd slope_in_time(const Eigen::ArrayXd& x, double step_s);
+
+/// Local cubics by least squares over +-half_width_s (Savitzky and Golay, Analytical Chemistry 36 (1964)
+/// 1627), the outermost windows' cubics at the ends: takes a thermometer's steps off what moves slowly.
+Eigen::ArrayXd smoothed(const Eigen::ArrayXd& x, double step_s, double half_width_s);
+
+/// The ten terms of the bias model over f (already less its reference) and df, in their order.
+std::array<Eigen::ArrayXd, kBiasTermCount> bias_terms(const Eigen::ArrayXd& f, const Eigen::ArrayXd& df);
+
+/// The nominal simulation of the recording format along one recording, and its derivatives.
+///
+///     T[0] = case[0] + start, T behind the case by one time constant; frequency = p(T);
+///     drive = amplitude p_D(T); quadrature = amplitude p_Q(T) + trim; rate = scale rate_in + B(f, df)
+inline constexpr double kSmoothing_s = 150.0;
+struct Simulation {
+  const Telemetry* telemetry = nullptr;
+  NominalModel model;
+  double start_degc = 0.0;  ///< T[0] less case[0]
+  Eigen::ArrayXd time_s;    ///< from the first row
+  Eigen::ArrayXd temperature_degc, temperature_slope;
+  /// Thermometers without their noise and steps, smoothed over kSmoothing_s: what an effect makes of T must
+  /// not carry the noise that the nominal simulation has made of it.
+  Eigen::ArrayXd board_degc, smooth_case_degc, smooth_degc, smooth_f;
+  Eigen::ArrayXd f, df;               ///< frequency less the bias model's reference [Hz], [Hz/s]
+  Eigen::ArrayXd frequency_per_degc;  ///< df/dT
+  Eigen::ArrayXd rate_per_f, rate_per_df;
+  Trace nominal;
+
+  /// Change of all outputs when the resonator is warmer by `warmer` (linear, the frequency exact).
+  Trace thermal(const Eigen::ArrayXd& warmer) const;
+  /// Change of all outputs when the true frequency is higher by `higher`.
+  Trace frequency(const Eigen::ArrayXd& higher) const;
+};
+Simulation simulate(const Telemetry& telemetry, const NominalModel& model, double start_degc);
+
+/// A parameter of the nominal model and what a unit of it changes.
+struct BaselineColumn {
+  std::string name;  ///< path in the model file, such as frequency.coefficients_hz[1]
+  Trace trace;
+  double prior_sd = 0.0;  ///< 0: free; else a nuisance that is known to about this much
+  bool nuisance = false;  ///< no parameter of the model: start temperature, lag below one sample
+};
+/// Free parameters: all of the model's, all ten terms of its bias.
+std::vector<BaselineColumn> baseline_columns(const Simulation& simulation);
+
+/// Value of the parameter of that name; zero for a nuisance.
+double parameter(const NominalModel& model, const std::string& name);
+
+/// The model with parameters moved by `steps` (order of baseline_columns); start_degc as well.
+void move_parameters(const std::vector<BaselineColumn>& columns, const Eigen::VectorXd& steps,
+                     NominalModel& model, double& start_degc);
+
+}  // namespace hemi::diagnosis

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "golden/diagnosis/bench_diagnosis.hpp"
+#include "golden/diagnosis/earned_name.hpp"
+#include "golden/diagnosis/effect_search.hpp"
+#include "golden/diagnosis/events.hpp"
+#include "golden/diagnosis/unexplained.hpp"
+
+namespace hemi::diagnosis {
+
+struct TelemetryOptions {
+  Eigen::Index most_rows = 1800;  ///< blocks that every output is averaged to
+  std::uint64_t seed = 1;
+  std::function<void(double share)> tick = [](double) {};  ///< called between steps; may throw
+};
+
+/// An effect of the catalogue that explains something, and what competes with it.
+struct Explanation {
+  std::string effect, form;
+  std::vector<Interval> figures;
+  double probability = 0.0;
+  double worth = 0.0;                                ///< what the score loses without it
+  std::string doubt;                                 ///< why it is not named; empty: it is
+  std::vector<std::pair<std::string, double>> near;  ///< effects that cost less than the margin more: id, gap
+  Trace trace;
+};
+
+/// A parameter of the model, as given and as this recording has it.
+struct Moved {
+  std::string name;
+  double given = 0.0, refitted = 0.0, deviation = 0.0;
+};
+
+struct TelemetryDiagnosis {
+  Verdict verdict = Verdict::consistent;
+  std::vector<Explanation> named, ambiguous;
+  std::vector<Moved> parameters;
+  double recalibration_p = 1.0;  ///< Wald test of all parameters together
+  std::vector<Improvement> improvement;
+  std::vector<Remainder> remainders;
+  std::vector<Colour> colours;
+  Events events;
+  std::vector<Line> lines;
+  Isolability isolability;
+  Decoys decoys;
+  NominalModel corrected;
+  double start_degc = 0.0;
+  std::shared_ptr<const Telemetry> telemetry;  ///< without the rows that events have spoilt
+  std::shared_ptr<Hypotheses> hypotheses;      ///< around the corrected model
+  HypothesisFit baseline, final;               ///< residuals before and after
+  std::vector<Member> members;
+};
+
+/// Locates and names what the nominal model leaves out of a recording; docs/diagnosis.md has the method.
+/// Throws std::invalid_argument for fewer than 256 rows or no output at all.
+TelemetryDiagnosis diagnose_telemetry(const Telemetry& telemetry, const NominalModel& model,
+                                      const TelemetryOptions& options = {});
+
+}  // namespace hemi::diagnosis

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "golden/diagnosis/unexplained.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <boost/math/tools/minima.hpp>
+#include <cmath>
+#include <limits>
+
+#include "golden/calibration/autoregressive_noise.hpp"
+
+namespace hemi::diagnosis {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kLeastSwing_degc = 1.0;
+
+struct Variable {
+  std::string name;
+  ArrayXd values;
+};
+
+std::vector<Variable> variables_of(const Simulation& s) {
+  const Telemetry& t = *s.telemetry;
+  std::vector<Variable> list;
+  const auto add = [&](const char* name, const ArrayXd& values) {
+    if (span(values) > 1e-9 * (1.0 + values.abs().maxCoeff())) list.push_back({name, values});
+  };
+  add("time_s", s.time_s);
+  // A thermometer that shows nothing but its noise orders the noise that it makes itself.
+  if (span(s.smooth_case_degc) > kLeastSwing_degc) {
+    add("resonator_temp_degc", s.smooth_degc);
+    add("resonator_temp_slope_degc_s", slope_in_time(s.smooth_degc, t.step_s));
+    add("case_temp_degc", s.smooth_case_degc);
+  }
+  if (t.has_board) add("board_temp_degc", s.board_degc);
+  add("rate_in_dph", t.rate_in_dph);
+  if (t.has_accel) add("accel_g", t.accel_g);
+  if (t.has_supply) add("supply_v", t.supply_v);
+  add("quadrature_trim_v", t.trim_v);
+  if (moves(t.amplitude, 1e-3)) add("amplitude", t.amplitude);
+  return list;
+}
+
+// Hat functions on nodes equally spaced between the extremes.
+Reduced hats(const RowSpace& space, const ArrayXd& x, Index nodes, Output output) {
+  const double low = x.minCoeff(), step = span(x) / static_cast<double>(nodes - 1);
+  std::vector<Trace> traces(static_cast<std::size_t>(nodes));
+  for (auto& trace : traces) trace[output] = VectorXd::Zero(x.size());
+  for (Index i = 0; i < x.size(); ++i) {
+    const double place = std::clamp((x[i] - low) / step, 0.0, static_cast<double>(nodes - 1));
+    const auto left = std::min(static_cast<Index>(place), nodes - 2);
+    traces[static_cast<std::size_t>(left)][output][i] = static_cast<double>(left + 1) - place;
+    traces[static_cast<std::size_t>(left + 1)][output][i] = place - static_cast<double>(left);
+  }
+  std::vector<const Trace*> list;
+  for (const auto& trace : traces) list.push_back(&trace);
+  return space.reduce(list);
+}
+
+// One output alone: least squares of y on x with autoregressive noise; -2 log likelihood and the fit.
+struct Alone {
+  double minus_two_log = std::numeric_limits<double>::infinity();
+  VectorXd coefficients, half_width;
+};
+
+Alone fit_alone(const MatrixXd& x, const VectorXd& y, const std::vector<calibration::RowRange>& segments,
+                const VectorXd& partial) {
+  MatrixXd z(x.rows(), x.cols() + 1);
+  z << x, y;
+  const MatrixXd white = calibration::whiten(z, segments, partial);
+  const VectorXd size = white.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+  const MatrixXd products = size.asDiagonal() * (white.transpose() * white) * size.asDiagonal();
+  const Index n = x.cols();
+  MatrixXd normal = products.topLeftCorner(n, n);
+  normal.diagonal().array() += 1e-9;
+  const Eigen::LDLT<MatrixXd> solver(normal);
+  Alone result;
+  const VectorXd scaled = solver.solve(products.col(n).head(n));
+  const double squares = std::max(products(n, n) - scaled.dot(products.col(n).head(n)), 1e-12);
+  const auto rows = static_cast<double>(y.size());
+  result.coefficients = (size.head(n).array() * scaled.array() / size[n]).matrix();
+  const double variance = squares / (size[n] * size[n]) / rows;
+  result.half_width = (1.96 * std::sqrt(variance) * size.head(n).array() *
+                       solver.solve(MatrixXd::Identity(n, n)).diagonal().array().max(0.0).sqrt())
+                          .matrix();
+  result.minus_two_log = rows * std::log(variance);
+  for (Index k = 0; k < partial.size(); ++k)
+    result.minus_two_log -= static_cast<double>(k + 1) * std::log1p(-partial[k] * partial[k]);
+  return result;
+}
+
+// The remainder's own noise: what is left when the free function is taken away, by Burg's recursion on the
+// residual (order by BIC).
+VectorXd burg(const VectorXd& e, Index most) {
+  VectorXd forward = e, backward = e, partial(most);
+  double power = e.squaredNorm() / static_cast<double>(e.size());
+  const auto rows = static_cast<double>(e.size());
+  double best = rows * std::log(power);
+  Index order = 0;
+  for (Index k = 0; k < most; ++k) {
+    const Index n = forward.size() - 1;
+    const VectorXd f = forward.tail(n), b = backward.head(n);
+    partial[k] = std::clamp(2.0 * f.dot(b) / (f.squaredNorm() + b.squaredNorm()), -0.9999, 0.9999);
+    forward = f - partial[k] * b;
+    backward = b - partial[k] * f;
+    power *= 1.0 - partial[k] * partial[k];
+    const double score = rows * std::log(power) + static_cast<double>(k + 1) * std::log(rows);
+    if (score < best) {
+      best = score;
+      order = k + 1;
+    }
+  }
+  return partial.head(order);
+}
+
+Alone with_own_noise(const MatrixXd& x, const VectorXd& y, const std::vector<calibration::RowRange>& segments,
+                     double rows_price) {
+  VectorXd partial;
+  Alone result;
+  for (int round = 0; round < 3; ++round) {
+    result = fit_alone(x, y, segments, partial);
+    result.minus_two_log += rows_price * static_cast<double>(partial.size());
+    if (round < 2) partial = burg(y - x * result.coefficients, 8);
+  }
+  return result;
+}
+
+}  // namespace
+
+namespace {
+
+std::vector<calibration::RowRange> segments_of(const std::vector<Index>& blocks) {
+  std::vector<calibration::RowRange> segments;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (i == 0 || blocks[i] != blocks[i - 1] + 1) segments.push_back({static_cast<Index>(i), 0});
+    ++segments.back().count;
+  }
+  return segments;
+}
+
+}  // namespace
+
+std::vector<Remainder> remainders(Hypotheses& hypotheses, const std::vector<Member>& members,
+                                  double threshold) {
+  std::vector<Remainder> list;
+  const RowSpace& space = hypotheses.space();
+  const Reduced design = hypotheses.design(members);
+  const auto variables = variables_of(hypotheses.simulation());
+  for (const Output output : kOutputs) {
+    const std::size_t c = place(output);
+    if (space.rows(output) < 64) continue;
+    std::vector<Index> acting;
+    for (Index j = 0; j < design[c].cols(); ++j)
+      if (design[c].col(j).squaredNorm() > 0.0) acting.push_back(j);
+    const MatrixXd own = design[c](Eigen::all, acting);
+    const VectorXd y = hypotheses.data()[c];
+    const double price = std::log(static_cast<double>(y.size()));
+    const auto segments = segments_of(space.blocks(output));
+    const Alone without = with_own_noise(own, y, segments, price);
+    Remainder best;
+    best.output = output;
+    best.evidence = threshold;
+    bool found = false;
+    for (const auto& variable : variables)
+      for (const Index nodes : {8, 16, 32, 64}) {
+        const Reduced free = hats(space, variable.values, nodes, output);
+        std::vector<Index> used;
+        for (Index j = 0; j < nodes; ++j)
+          if (free[c].col(j).squaredNorm() > 0.0) used.push_back(j);
+        MatrixXd x(own.rows(), own.cols() + static_cast<Index>(used.size()));
+        x << own, free[c](Eigen::all, used);
+        const Alone with = with_own_noise(x, y, segments, price);
+        const double evidence =
+            without.minus_two_log - with.minus_two_log - price * static_cast<double>(used.size());
+        if (evidence <= best.evidence) continue;
+        found = true;
+        best.evidence = evidence;
+        best.variable = variable.name;
+        const auto count = static_cast<Index>(used.size());
+        best.value = with.coefficients.tail(count);
+        best.half_width = with.half_width.tail(count);
+        best.fitted = x.rightCols(count) * best.value;
+        best.at.resize(count);
+        for (Index j = 0; j < count; ++j)
+          best.at[j] = variable.values.minCoeff() +
+                       span(variable.values) * static_cast<double>(used[static_cast<std::size_t>(j)]) /
+                           static_cast<double>(nodes - 1);
+      }
+    if (found) list.push_back(std::move(best));
+  }
+  return list;
+}
+
+Colour colour_of(Hypotheses& hypotheses, const std::vector<Member>& members, Output output) {
+  Colour colour;
+  colour.output = output;
+  const std::size_t c = place(output);
+  const RowSpace& space = hypotheses.space();
+  if (space.rows(output) < 64) return colour;
+  const MatrixXd x = hypotheses.noise_basis(output, members);
+  const VectorXd y = hypotheses.data()[c].col(0);
+  const auto& blocks = space.blocks(output);
+  const NoiseShape stated = hypotheses.expected()[c];
+  const auto free = [&](double NoiseShape::*part) {
+    const auto value = [&](double log_ratio) {
+      NoiseShape shape = stated;
+      shape.*part = std::max(stated.*part, stated.white * std::exp(log_ratio));
+      return restricted_likelihood(x, y, blocks, shape, nullptr);
+    };
+    const auto found = boost::math::tools::brent_find_minima(value, -16.0, 9.0, 12);
+    NoiseShape best = stated;
+    best.*part = std::max(stated.*part, stated.white * std::exp(found.first));
+    double scale = 1.0;
+    restricted_likelihood(x, y, blocks, best, &scale);
+    return std::pair(found.second, scale * best.*part);
+  };
+  const double as_stated = restricted_likelihood(x, y, blocks, stated, nullptr);
+  const auto [with_walk, walk] = free(&NoiseShape::walk);
+  const auto [with_flicker, flicker] = free(&NoiseShape::flicker);
+  colour.evidence = as_stated - std::min(with_walk, with_flicker);
+  colour.walk_over_flicker = with_flicker - with_walk;
+  const double step_s = hypotheses.simulation().telemetry->step_s;
+  const auto length = static_cast<double>(space.block_rows());
+  colour.walk = std::sqrt(walk / (length * step_s));
+  // Processes a factor 6 apart hold h^2 ln 6 each; from one cycle a recording to half the sampling rate.
+  colour.flicker =
+      std::sqrt(flicker / std::log(6.0) * std::log(0.5 * length * static_cast<double>(y.size())));
+  return colour;
+}
+
+}  // namespace hemi::diagnosis

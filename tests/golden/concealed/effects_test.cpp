@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "golden/concealed/effects.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "golden/concealed/draw.hpp"
+
+namespace hemi::concealed {
+namespace {
+
+const std::map<std::string, int> kOutputOf{
+    {"frequency_hz", kFrequency}, {"drive_v", kDrive}, {"quadrature_v", kQuadrature}, {"rate_dph", kRate}};
+
+/// Energy of a trace over the white noise, by channel.
+std::array<double, kOutputs> energies(const Trace& trace, const Instrument& unit) {
+  std::array<double, kOutputs> energy{};
+  for (int output = 0; output < kOutputs; ++output)
+    energy[output] = trace[output].square().sum() / std::pow(unit.noise[output].white, 2);
+  return energy;
+}
+
+class EveryKind : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EveryKind, ShowsWhereTheCatalogueSaysAndVanishesWithItsStrength) {
+  const Kind& one = kind(GetParam());
+  for (std::uint64_t draw = 0; draw < 2; ++draw) {
+    Random random(3, one.id, draw);
+    const Stand stand = random_stand(random, "multispeed", one.needs);
+    const Form form = one.draw({random, stand.in, stand.unit.model, stand.baseline});
+    const double offset = stand.unit.nuisance.start_offset_degc;
+    const auto trace_at = [&](double strength) {
+      return trace_of(simulate(stand.unit.model, stand.in, offset, {form.at(form.sign * strength)}),
+                      stand.baseline, stand.unit.model, stand.in, offset);
+    };
+    if (form.dprime) {  // acts on the written rows
+      EXPECT_GT(form.dprime(form.high), 50.0);
+      continue;
+    }
+    const auto full = energies(trace_at(form.high), stand.unit);
+    const double sum = full[0] + full[1] + full[2] + full[3];
+    EXPECT_GT(sum, 25.0) << one.id << " " << form.name << " is nowhere to be seen";
+    if (!one.channel.empty()) {
+      EXPECT_GT(full[kOutputOf.at(one.channel)], 0.5 * sum) << one.id << " " << form.name;
+    }
+    if (!form.scalable) continue;
+    const auto small = energies(trace_at(1e-3 * form.high + form.low), stand.unit);
+    EXPECT_LT(small[0] + small[1] + small[2] + small[3], 0.1 * sum) << one.id << " " << form.name;
+  }
+}
+
+std::vector<std::string> all_ids() {
+  std::vector<std::string> ids;
+  for (const Kind& one : catalogue_kinds()) ids.push_back(one.id);
+  for (const Kind& one : unknown_kinds()) ids.push_back(one.id);
+  return ids;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryKind, ::testing::ValuesIn(all_ids()),
+                         [](const auto& of) { return of.param; });
+
+TEST(Kinds, HaveNamesOfTheirOwn) {
+  const auto ids = all_ids();
+  EXPECT_EQ(std::set<std::string>(ids.begin(), ids.end()).size(), ids.size());
+  EXPECT_THROW(kind("phlogiston"), std::out_of_range);
+}
+
+TEST(OscillatorTemperature, MovesTheCountedFrequencyAlone) {
+  Random random(4);
+  const Stand stand = random_stand(random, "cycle", kBoardLoad);
+  const Form form = kind("oscillator_temperature").draw({random, stand.in, stand.unit.model, stand.baseline});
+  const State with = simulate(stand.unit.model, stand.in, 0.0, {form.at(3.0)});
+  const State without = simulate(stand.unit.model, stand.in, 0.0);
+  EXPECT_TRUE((with.rate_dph == without.rate_dph).all());
+  EXPECT_TRUE((with.drive_v == without.drive_v).all());
+  const Series ppm = (with.frequency_hz / without.frequency_hz - 1.0) * 1e6;
+  EXPECT_NEAR(ppm.maxCoeff() - ppm.minCoeff(), 3.0, 1e-3);
+}
+
+TEST(SelfHeating, IsFeltByAllThatFollowsTheShell) {
+  Random random(4);
+  const Stand stand = random_stand(random, "constant", 0);
+  const Form form = kind("self_heating").draw({random, stand.in, stand.unit.model, stand.baseline});
+  const State with = simulate(stand.unit.model, stand.in, 0.0, {form.at(1.5)});
+  const State without = simulate(stand.unit.model, stand.in, 0.0);
+  const Eigen::Index last = with.rate_dph.size() - 1;
+  // After hours at a constant case the shell is 1.5 degC warmer (five time constants and more: 0.7 %).
+  EXPECT_NEAR(with.shell_degc[last] - without.shell_degc[last], 1.5, 0.015);
+  const Series t = without.shell_degc.tail(1) + 1.5;
+  EXPECT_NEAR(with.frequency_hz[last], polynomial(stand.unit.model.frequency_hz, t)[0], 0.01);
+  EXPECT_NEAR(with.drive_v[last], polynomial(stand.unit.model.drive_v, t - 20.0)[0], 1e-4);
+  EXPECT_NE(with.rate_dph[last], without.rate_dph[last]);
+}
+
+TEST(PickoffGain, ScalesTheRateWithTheDrive) {
+  Random random(9);
+  const Stand stand = random_stand(random, "cycle", kTurn);
+  const Form form = kind("pickoff_gain").draw({random, stand.in, stand.unit.model, stand.baseline});
+  const State with = simulate(stand.unit.model, stand.in, 0.0, {form.at(1e-4)});
+  const State without = simulate(stand.unit.model, stand.in, 0.0);
+  const Series drive = with.drive_v / without.drive_v, rate = with.rate_dph / without.rate_dph;
+  EXPECT_LT((drive - rate).abs().maxCoeff(), 1e-12);
+  EXPECT_LT((drive * (1.0 + 1e-4 * (stand.in.board_degc - 25.0)) - 1.0).abs().maxCoeff(), 1e-12);
+}
+
+}  // namespace
+}  // namespace hemi::concealed

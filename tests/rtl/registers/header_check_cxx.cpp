@@ -1,0 +1,3 @@
+// SPDX-License-Identifier: Apache-2.0
+#define VIEW view_of_cxx
+#include "tests/rtl/registers/header_check.inc"
