@@ -125,7 +125,7 @@ int diagnose_bench(const DiagnoseOptions& options, const recording::Recording& r
     fmt::print("{}\n", recording::json_text(json, 2));
   else
     fmt::print("{}wrote {}, {}\n", to_text(result), json_path, model_path);
-  return exit_good;
+  return result.verdict == diagnosis::Verdict::consistent ? exit_good : exit_difference;
 }
 
 // The kind of recording decides what can be asked of it.

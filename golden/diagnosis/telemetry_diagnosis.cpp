@@ -24,6 +24,8 @@ constexpr double kTemper = 2.0;       // forms are not exact: differences count 
 constexpr double kStructure = 40.0;   // a free function of an input
 constexpr double kColour = 25.0;      // colour of the rate that the model does not state
 constexpr double kRecalibrate_p = 1e-6;
+constexpr double kRecalibrateTogether_p = 1e-12;
+constexpr double kMovedAlone = 4.5;
 constexpr double kAgree = 5.0;       // deviations between halves
 constexpr double kRemaining = 0.35;  // of the squares beyond noise
 constexpr std::size_t kLeastRepeats = 3;
@@ -248,6 +250,15 @@ void Diagnosis::name_events(TelemetryDiagnosis& result) {
   }
 }
 
+// All parameters together have moved, and either one of them by itself or all by far: the equations'
+// discretisation alone moves well-known combinations by parts of a deviation each.
+bool recalibrated(const TelemetryDiagnosis& result) {
+  const bool one = std::ranges::any_of(result.parameters, [](const Moved& each) {
+    return std::abs(each.refitted - each.given) > kMovedAlone * each.deviation;
+  });
+  return result.recalibration_p < (one ? kRecalibrate_p : kRecalibrateTogether_p);
+}
+
 void Diagnosis::decide(TelemetryDiagnosis& result) {
   const auto structured = [&](Output output) {
     return std::ranges::any_of(result.remainders, [&](const Remainder& r) {
@@ -291,7 +302,7 @@ void Diagnosis::decide(TelemetryDiagnosis& result) {
     result.verdict = Verdict::ambiguous;
   else if (unknown)
     result.verdict = Verdict::unknown;
-  else if (result.recalibration_p < kRecalibrate_p)
+  else if (recalibrated(result))
     result.verdict = Verdict::recalibrate;
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // hemi diagnose as a user meets it: files, verdict, the corrected model given back, messages.
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <random>
 
 #include "cli/recording/recording.hpp"
@@ -12,6 +15,12 @@ namespace {
 
 class Diagnose : public ProgramTest {
  protected:
+  // Exit code 1: something was found.
+  Outcome found(const Arguments& arguments) const {
+    Outcome outcome = hemi(arguments);
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    return outcome;
+  }
   // A resonator of 16 Hz under random steps of force, integrated by velocity Verlet at 64 steps a sample.
   void write_bench(double k3) const {
     recording::Recording bench{.device = "rig", .sample_rate_hz = 200.0};
@@ -38,7 +47,7 @@ class Diagnose : public ProgramTest {
 
 TEST_F(Diagnose, NamesModelsAndIsContentWithTheModel) {
   write_bench(4e4);
-  const auto json = good({"diagnose", "bench.csv", "-o", "out", "--json"}).json();
+  const auto json = found({"diagnose", "bench.csv", "-o", "out", "--json"}).json();
   EXPECT_EQ(json["format"], "hemi-diagnosis/1");
   ASSERT_EQ(json["verdict"], "named");
   ASSERT_EQ(json["effects"].size(), 1U);
@@ -58,12 +67,12 @@ TEST_F(Diagnose, NamesModelsAndIsContentWithTheModel) {
       good({"diagnose", "bench.csv", "--model", "out/corrected.model.json", "-o", "again", "--json"}).json();
   EXPECT_EQ(again["verdict"], "consistent");
   EXPECT_TRUE(again["effects"].empty());
-  EXPECT_NE(good({"diagnose", "bench.csv", "-o", "out"}).out.find("verdict: named"), std::string::npos);
+  EXPECT_NE(found({"diagnose", "bench.csv", "-o", "out"}).out.find("verdict: named"), std::string::npos);
 }
 
 TEST_F(Diagnose, BadInputs) {
   write_telemetry(2000);
-  expect_bad({"diagnose", "chamber.csv"}, {"chamber.csv", "force_v", "not diagnosed yet", "hemi calibrate"});
+  expect_bad({"diagnose", "chamber.csv"}, {"chamber.csv", "instrument model", "--model", "hemi calibrate"});
   write_bench(0.0);
   expect_bad({"diagnose", "bench.csv", "--from", "5", "--to", "4"}, {"no stretch", "--from below --to"});
   expect_bad({"diagnose", "bench.csv", "--from", "5", "--to", "6"}, {"bench.csv", "1024"});
@@ -75,6 +84,51 @@ TEST_F(Diagnose, BadInputs) {
        "\"effects\": [{\"id\": \"gas_leak\"}]}");
   expect_bad({"diagnose", "bench.csv", "--model", "odd.model.json"}, {"odd.model.json", "gas_leak", "known"});
 }
+
+struct Elsewhere {
+  const char* file;
+  const char* verdict;
+  const char* effect;  // empty: none
+};
+
+// Recordings from a writer that shares no code with this program, not part of the source: skipped where
+// absent.
+class WrittenElsewhere : public Diagnose, public ::testing::WithParamInterface<Elsewhere> {};
+
+TEST_P(WrittenElsewhere, HasTheRightVerdict) {
+  const char* const shared = std::getenv("HEMI_SHARED");
+  const std::filesystem::path folder =
+      (shared != nullptr ? std::filesystem::path(shared)
+                         : std::filesystem::path(HEMI_SOURCE_DIR) / ".." / "shared") /
+      "recordings" / "written-elsewhere";
+  const auto at = [&](const char* suffix) {
+    return (folder / (std::string(GetParam().file) + suffix)).string();
+  };
+  if (!std::filesystem::exists(at(".csv"))) GTEST_SKIP() << "no " << at(".csv");
+  const Outcome outcome = hemi({"diagnose", at(".csv"), "--model", at(".model.json"), "-o", "out", "--json"});
+  EXPECT_EQ(outcome.code, std::string_view(GetParam().verdict) == "consistent" ? 0 : 1) << outcome.err;
+  const auto json = outcome.json();
+  EXPECT_EQ(json["verdict"], GetParam().verdict);
+  EXPECT_TRUE(json["alternatives"].empty());
+  std::string effects;
+  for (const auto& effect : json["effects"]) effects += effect["id"].get<std::string>();
+  EXPECT_EQ(effects, GetParam().effect);
+  EXPECT_TRUE(std::filesystem::exists(path("out/report.html")));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Recordings, WrittenElsewhere,
+    ::testing::Values(Elsewhere{"null-cycle", "consistent", ""},
+                      Elsewhere{"single-demodulation_phase", "named", "demodulation_phase"},
+                      Elsewhere{"single-duffing", "named", "duffing"},
+                      Elsewhere{"single-oscillator_temperature", "named", "oscillator_temperature"},
+                      Elsewhere{"single-thermal_hysteresis", "named", "thermal_hysteresis"},
+                      Elsewhere{"unknown-u_etalon", "unknown", "unknown"}),
+    [](const auto& each) {
+      std::string name = each.param.file;
+      std::ranges::replace(name, '-', '_');
+      return name;
+    });
 
 }  // namespace
 }  // namespace hemi::cli::testing

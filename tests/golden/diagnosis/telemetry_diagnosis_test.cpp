@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "golden/diagnosis/telemetry_diagnosis.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/golden/diagnosis/telemetry_writer.hpp"
+
+namespace hemi::diagnosis {
+namespace {
+
+TelemetryDiagnosis diagnosed(const tests::Recipe& recipe) {
+  return diagnose_telemetry(tests::telemetry(recipe), tests::nominal());
+}
+
+std::string moved(const TelemetryDiagnosis& result) {
+  std::string text = "p " + std::to_string(result.recalibration_p);
+  for (const auto& each : result.parameters)
+    text += "\n" + each.name + " " + std::to_string((each.refitted - each.given) / each.deviation);
+  return text;
+}
+
+// The one name, its first figure inside four times its 95 % interval's half width.
+void expect_named(const TelemetryDiagnosis& result, const char* effect, double truth) {
+  ASSERT_EQ(result.verdict, Verdict::named) << effect;
+  ASSERT_EQ(result.named.size(), 1U) << effect;
+  EXPECT_EQ(result.named[0].effect, effect);
+  const Interval& first = result.named[0].figures.at(0);
+  EXPECT_NEAR(first.figure.value, truth, 2.0 * (first.high - first.low)) << effect;
+}
+
+TEST(TelemetryDiagnosis, NothingLeftOutIsConsistent) {
+  for (const std::uint64_t seed : {11U, 12U, 13U}) {
+    const auto result = diagnosed({.seed = seed});
+    EXPECT_EQ(result.verdict, Verdict::consistent) << seed << moved(result);
+    EXPECT_TRUE(result.named.empty()) << seed;
+  }
+}
+
+TEST(TelemetryDiagnosis, AWrongNumberIsRecalibratedAndNotNamed) {
+  const auto result = diagnosed({.seed = 21, .tau_scale = 1.05});
+  EXPECT_EQ(result.verdict, Verdict::recalibrate);
+  EXPECT_TRUE(result.named.empty());
+  EXPECT_NEAR(result.corrected.time_constant_s, 1900.0 * 1.05, 2.0);
+}
+
+TEST(TelemetryDiagnosis, NamesDuffing) {
+  expect_named(diagnosed({.seed = 31, .duffing = 2e-7}), "duffing", 2e-7);
+}
+
+TEST(TelemetryDiagnosis, NamesGasLeak) {
+  expect_named(diagnosed({.seed = 41, .leak_per_h = 1e-4}), "gas_leak", 1e-4);
+}
+
+TEST(TelemetryDiagnosis, NamesHysteresis) {
+  const auto result = diagnosed({.seed = 51, .hysteresis_dph = 0.5});
+  ASSERT_EQ(result.named.size(), 1U);
+  EXPECT_EQ(result.named[0].effect, "thermal_hysteresis");
+}
+
+TEST(TelemetryDiagnosis, WhatIsInNoCatalogueIsUnknownAndWhereItLivesIsSaid) {
+  const auto result = diagnosed({.seed = 61, .ripple_dph = 0.6});
+  EXPECT_EQ(result.verdict, Verdict::unknown);
+  EXPECT_TRUE(result.named.empty());
+  ASSERT_EQ(result.remainders.size(), 1U);
+  EXPECT_EQ(result.remainders[0].output, Output::rate);
+  EXPECT_EQ(result.remainders[0].variable, "resonator_temp_degc");
+}
+
+}  // namespace
+}  // namespace hemi::diagnosis
