@@ -32,7 +32,7 @@ struct Line {
 
 /// The strongest line of an output's residual (one column, a value a row, NaN where missing) by its
 /// periodogram over the local median, plain and with the phase of one and two times the frequency taken out;
-/// nothing above p = 1e-4 for all bins together.
+/// nothing above p = 1e-7 for all bins together.
 std::optional<Line> find_line(const Telemetry& telemetry, const Simulation& simulation, Output output,
                               const Eigen::VectorXd& residual);
 

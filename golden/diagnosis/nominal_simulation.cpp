@@ -161,13 +161,17 @@ void add_polynomial(std::vector<BaselineColumn>& columns, const Simulation& s, O
   }
 }
 
+void add_start(std::vector<BaselineColumn>& columns, const Simulation& s) {
+  columns.push_back(
+      {.name = "start", .trace = s.thermal((-s.time_s / s.model.time_constant_s).exp()), .nuisance = true});
+}
+
 void add_thermal(std::vector<BaselineColumn>& columns, const Simulation& s) {
   const double tau = s.model.time_constant_s;
   // A thousandth of tau: the difference quotient is exact to 1e-3 of itself, and Gauss-Newton repeats.
   const ArrayXd later =
       lag(s.smooth_case_degc, s.telemetry->step_s, tau * 1.001, s.smooth_case_degc[0] + s.start_degc);
   columns.push_back({.name = "thermal.time_constant_s", .trace = s.thermal((later - s.smooth_degc) / 0.001)});
-  columns.push_back({.name = "start", .trace = s.thermal((-s.time_s / tau).exp()), .nuisance = true});
   columns.push_back(
       {.name = "lag",
        .trace = s.thermal(-s.telemetry->step_s * slope_in_time(s.smooth_degc, s.telemetry->step_s)),
@@ -181,6 +185,8 @@ std::vector<BaselineColumn> baseline_columns(const Simulation& s) {
   std::vector<BaselineColumn> columns;
   add_polynomial(columns, s, Output::frequency, s.model.frequency_hz, "frequency.coefficients_hz");
   const double swing = span_of(s.smooth_case_degc);
+  // A resonator that has not settled shows its start at any temperature, its time constant at none.
+  if (s.telemetry->has_case && s.model.time_constant_s > 0.0) add_start(columns, s);
   if (s.telemetry->has_case && swing > kLeastSwing_degc) add_thermal(columns, s);
   if (s.telemetry->has(Output::rate)) {
     const auto terms = bias_terms(s.smooth_f, slope_in_time(s.smooth_f, s.telemetry->step_s));

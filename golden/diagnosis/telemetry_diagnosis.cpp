@@ -22,7 +22,8 @@ constexpr double kNameMargin = 10.0;  // to the nearest rival
 constexpr double kWorth = 8.0;        // beyond the price, to doing without
 constexpr double kTemper = 2.0;       // forms are not exact: differences count half
 constexpr double kStructure = 40.0;   // a free function of an input
-constexpr double kColour = 25.0;      // colour of the rate that the model does not state
+constexpr double kStructureInTime = 150.0;
+constexpr double kColour = 25.0;  // colour of the rate that the model does not state
 constexpr double kRecalibrate_p = 1e-6;
 constexpr double kRecalibrateTogether_p = 1e-12;
 constexpr double kMovedAlone = 4.5;
@@ -262,7 +263,9 @@ bool recalibrated(const TelemetryDiagnosis& result) {
 void Diagnosis::decide(TelemetryDiagnosis& result) {
   const auto structured = [&](Output output) {
     return std::ranges::any_of(result.remainders, [&](const Remainder& r) {
-      return r.output == output && (result.members.empty() || r.share > kRemaining);
+      // A function of time alone is what coloured noise looks like as well.
+      const double least = r.variable == "time_s" ? kStructureInTime : kStructure;
+      return r.output == output && r.evidence > least && (result.members.empty() || r.share > kRemaining);
     });
   };
   // A name that leaves most of the misfit where it was is no explanation.

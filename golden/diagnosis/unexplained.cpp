@@ -220,10 +220,15 @@ Colour colour_of(Hypotheses& hypotheses, const std::vector<Member>& members, Out
     return std::pair(found.second, scale * best.*part);
   };
   const double as_stated = restricted_likelihood(x, y, blocks, stated, nullptr);
-  const auto [with_walk, walk] = free(&NoiseShape::walk);
-  const auto [with_flicker, flicker] = free(&NoiseShape::flicker);
+  const auto [with_walk, walk_alone] = free(&NoiseShape::walk);
+  const auto [with_flicker, flicker_alone] = free(&NoiseShape::flicker);
   colour.evidence = as_stated - std::min(with_walk, with_flicker);
   colour.walk_over_flicker = with_flicker - with_walk;
+  // Sizes from the fit in which all parts are free; a part that it gave up has the size it has alone.
+  const NoiseShape own = fit_noise_shape(x, y, blocks, stated);
+  const double most = y.squaredNorm() / static_cast<double>(y.size());
+  const double walk = own.walk > 0.0 ? own.walk : std::min(walk_alone, most);
+  const double flicker = own.flicker > 0.0 ? own.flicker : std::min(flicker_alone, most);
   const double step_s = hypotheses.simulation().telemetry->step_s;
   const auto length = static_cast<double>(space.block_rows());
   colour.walk = std::sqrt(walk / (length * step_s));
