@@ -19,6 +19,7 @@ constexpr Index kNeighbours = 4;
 constexpr double kLineLog_p = -16.11809565095832;  // 1e-7: six spectra a recording, tails not quite Gaussian
 constexpr Index kMedianBins = 101;
 constexpr double kSlowRows = 25.0;
+constexpr double kLeastMove_hz = 0.5;
 constexpr double kOutputRate_hz = 200.0;
 
 double median(std::vector<double> values) {
@@ -149,9 +150,12 @@ std::optional<Line> find_line(const Telemetry& t, const Simulation& s, Output ou
     const Eigen::ArrayXd counted = t[Output::frequency];
     recorded = counted.isNaN().select(frequency, counted);
   }
+  const double moved = frequency.maxCoeff() - frequency.minCoeff();
   std::optional<Line> best;
   double best_ratio = 0.0;
   for (const int harmonic : {0, 1, 2}) {
+    // A carrier that stands still is a standing line; taking its phase out would move red noise elsewhere.
+    if (harmonic > 0 && moved < kLeastMove_hz) continue;
     VectorXd phase = VectorXd::Zero(e.size());
     double turns = 0.0;
     for (Index i = 0; harmonic > 0 && i < e.size(); ++i) {
