@@ -129,6 +129,18 @@ ArrayXd late(const ArrayXd& x, double n) {
   return y;
 }
 
+// The nominal output without the thermometer's noise, which a delay would move against itself.
+ArrayXd smooth_nominal(const Simulation& s, Output output) {
+  const ArrayXd amplitude = s.telemetry->amplitude;
+  if (output == Output::drive) return amplitude * s.model.drive_v.at(s.smooth_degc);
+  if (output == Output::quadrature)
+    return amplitude * s.model.quadrature_v.at(s.smooth_degc) + s.telemetry->trim_v.array();
+  const auto terms = bias_terms(s.smooth_f, slope_in_time(s.smooth_f, s.telemetry->step_s));
+  ArrayXd rate = s.model.scale_factor * s.telemetry->rate_in_dph.array();
+  for (std::size_t i = 0; i < kBiasTermCount; ++i) rate += s.model.bias_dph[i] * terms[i];
+  return rate;
+}
+
 EffectFamily time_shift(Output output) {
   EffectFamily family;
   family.effect = "time_shift";
@@ -137,7 +149,7 @@ EffectFamily time_shift(Output output) {
   family.spacing = {kDelayRatio};
   family.columns = [output](const Simulation& s, const Shape& shape) {
     Trace trace;
-    const ArrayXd whole = s.nominal[output];
+    const ArrayXd whole = smooth_nominal(s, output);
     trace[output] = late(whole, shape[0]) - whole;
     return std::vector<Trace>{trace};
   };
@@ -157,7 +169,9 @@ std::vector<EffectFamily> rate_families(const Simulation& s) {
   add_commands(families, t);
   if (moves(t.rate_in_dph, 1.0)) add_turning(families);
   for (const Output output : {Output::rate, Output::quadrature, Output::drive})
-    if (t.has(output)) families.push_back(time_shift(output));
+    if (t.has(output) && (moves(t.case_degc, 1.0) || moves(t.rate_in_dph, 1.0) || moves(t.trim_v, 1e-3) ||
+                          moves(t.amplitude, 1e-3)))
+      families.push_back(time_shift(output));
   if (t.has_accel && moves(t.accel_g, 0.05)) add_attitude(families);
   return families;
 }
