@@ -73,6 +73,13 @@ void refuse_overwriting(const std::vector<std::string>& written, const std::vect
   }
 }
 
+void make_directory(const std::string& directory) {
+  std::error_code code;
+  std::filesystem::create_directories(directory, code);
+  if (code || !std::filesystem::is_directory(directory))
+    throw recording::OutputError(directory, code ? code.message() : "is no directory", "name another one");
+}
+
 void require_an_output(const recording::RawCapture& capture, const Setup& setup) {
   const auto needed = static_cast<std::size_t>(sampling(setup.wide).decimation * config::ticks_per_output);
   if (capture.adc_x.size() >= needed) return;

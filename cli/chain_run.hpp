@@ -29,6 +29,9 @@ void refuse_settled_points(const std::string& path);
 /// InputError where writing one of the files would replace one that is read.
 void refuse_overwriting(const std::vector<std::string>& written, const std::vector<std::string>& read);
 
+/// Makes a directory for results, its parents too; OutputError where that is impossible.
+void make_directory(const std::string& directory);
+
 /// InputError for a capture that ends before its first output.
 void require_an_output(const recording::RawCapture& capture, const Setup& setup);
 

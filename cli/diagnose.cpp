@@ -76,14 +76,6 @@ Stretch longest_stretch(const recording::Recording& recording, double from_s, do
           time[best_at + best - 1]};
 }
 
-std::string make_directory(const std::string& directory) {
-  std::error_code code;
-  fs::create_directories(directory, code);
-  if (code || !fs::is_directory(directory))
-    throw recording::OutputError(directory, code ? code.message() : "is no directory", "name another one");
-  return directory;
-}
-
 diagnosis::BenchDiagnosis run(const DiagnoseOptions& options, const Stretch& fitted,
                               const std::optional<diagnosis::BenchPart>& other, double rate_hz,
                               const std::optional<diagnosis::BenchPrior>& prior) {
@@ -144,7 +136,7 @@ int diagnose(const DiagnoseOptions& options) {
   if (recording.find("force_v") != nullptr && recording.find("displacement_v") != nullptr)
     return diagnose_bench(options, recording);
   if (holds_telemetry(recording))
-    return diagnose_telemetry(recording, {options.model, make_directory(options.directory), options.json});
+    return diagnose_telemetry(recording, {options.model, options.directory, options.json});
   if (holds_case_and_rate(recording)) {
     print_notes(recording.notes);
     return diagnose_case(recording, {.directory = options.directory, .json = options.json});

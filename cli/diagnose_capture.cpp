@@ -147,11 +147,7 @@ int diagnose_capture(const CaptureOptions& options) {
   std::vector<std::string> notes = input.notes;
   notes.insert(notes.end(), d.notes.begin(), d.notes.end());
   print_notes(notes);
-  std::error_code code;
-  fs::create_directories(options.directory, code);
-  if (code || !fs::is_directory(options.directory))
-    throw recording::OutputError(options.directory, code ? code.message() : "is no directory",
-                                 "name another one");
+  make_directory(options.directory);
   const Json json = to_json(d, options, notes);
   recording::write_text(json_path, recording::json_text(json, 2) + "\n");
   if (options.json)

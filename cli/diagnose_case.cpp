@@ -253,9 +253,7 @@ int diagnose_case(const Recording& recording, const DiagnoseCaseOptions& options
     throw recording::InputError({.path = recording.path}, error.what(),
                                 "record a temperature cycle of at least 256 rows");
   }
-  std::error_code code;
-  fs::create_directories(options.directory, code);
-  if (code) throw recording::OutputError(options.directory, code.message(), "name another one");
+  make_directory(options.directory);
   const std::string text = recording::json_text(to_json(result, recording), 2);
   recording::write_text(path, text + "\n");
   if (options.json)

@@ -163,9 +163,7 @@ int diagnose_table(const DiagnoseTableOptions& options) {
   } catch (const std::invalid_argument& error) {
     throw recording::InputError({.path = options.points}, error.what(), "add soaks at other temperatures");
   }
-  std::error_code code;
-  fs::create_directories(options.directory, code);
-  if (code) throw recording::OutputError(options.directory, code.message(), "name another one");
+  make_directory(options.directory);
   const std::string text = recording::json_text(to_json(result, options.points), 2);
   recording::write_text(path, text + "\n");
   if (options.json)

@@ -310,6 +310,7 @@ int diagnose_telemetry(const recording::Recording& recording, const DiagnoseTele
   const DiagnosisInput input = telemetry_of(recording, model, kMostRows);
   for (const auto& notes : {recording.notes, input.notes}) print_notes(notes);
   diagnosis::TelemetryOptions search;
+  make_directory(options.directory);
   TelemetryDiagnosis result;
   try {
     recording::Progress progress("diagnosis", 1.0);
@@ -322,7 +323,6 @@ int diagnose_telemetry(const recording::Recording& recording, const DiagnoseTele
     throw recording::InputError({.path = recording.path}, error.what(), "record longer");
   }
   const Json json = to_json(result, input, recording, options.model);
-  fs::create_directories(options.directory);
   const auto in = [&](const char* file) { return (fs::path(options.directory) / file).string(); };
   recording::write_model(in("corrected.model.json"), corrected_model(result, model));
   recording::write_text(in("diagnosis.json"), recording::json_text(json, 2) + "\n");

@@ -7,10 +7,6 @@ bool moves(const Eigen::VectorXd& input, double least) {
   return input.size() > 0 && input.maxCoeff() - input.minCoeff() > least;
 }
 
-double span(const Eigen::ArrayXd& x) {
-  return x.size() == 0 ? 0.0 : x.maxCoeff() - x.minCoeff();
-}
-
 std::vector<std::vector<double>> geometric_grid(double low, double high, double ratio) {
   std::vector<std::vector<double>> grid;
   for (double value = low; value <= high * (1.0 + 1e-9); value *= ratio) grid.push_back({value});

@@ -47,7 +47,4 @@ bool moves(const Eigen::VectorXd& input, double least);
 /// low, low ratio, low ratio^2, ... up to high.
 std::vector<std::vector<double>> geometric_grid(double low, double high, double ratio);
 
-/// Largest less smallest value.
-double span(const Eigen::ArrayXd& x);
-
 }  // namespace hemi::diagnosis

@@ -34,6 +34,10 @@ ArrayXd lag(const ArrayXd& x, double step_s, double tau_s, double start) {
   return y;
 }
 
+double span(const ArrayXd& x) {
+  return x.size() == 0 ? 0.0 : x.maxCoeff() - x.minCoeff();
+}
+
 ArrayXd slope_in_time(const ArrayXd& x, double step_s) {
   const Eigen::Index n = x.size();
   ArrayXd slope = ArrayXd::Zero(n);
@@ -98,7 +102,6 @@ Simulation simulate(const Telemetry& telemetry, const NominalModel& model, doubl
   s.smooth_degc =
       lag(s.smooth_case_degc, telemetry.step_s, model.time_constant_s, s.smooth_case_degc[0] + start_degc);
   s.smooth_f = model.frequency_hz.at(s.smooth_degc) - model.bias_reference_hz;
-  s.temperature_slope = slope_in_time(s.temperature_degc, telemetry.step_s);
   const ArrayXd frequency = model.frequency_hz.at(s.temperature_degc);
   s.frequency_per_degc = model.frequency_hz.slope(s.temperature_degc);
   s.f = frequency - model.bias_reference_hz;
@@ -135,10 +138,6 @@ constexpr double kLeastSwing_degc = 1.0;
 constexpr const char* kBiasNames[kBiasTermCount] = {"1",    "f",    "f^2",  "f^3",    "df",
                                                     "df^2", "df^3", "f*df", "f^2*df", "f*df^2"};
 
-double span_of(const ArrayXd& x) {
-  return x.maxCoeff() - x.minCoeff();
-}
-
 ArrayXd power(const ArrayXd& x, std::size_t exponent) {
   ArrayXd value = ArrayXd::Ones(x.size());
   for (std::size_t i = 0; i < exponent; ++i) value *= x;
@@ -149,8 +148,7 @@ void add_polynomial(std::vector<BaselineColumn>& columns, const Simulation& s, O
                     const Polynomial& polynomial, const char* name) {
   if (!s.telemetry->has(output)) return;
   // At one temperature nothing but the constant can be told.
-  const std::size_t terms =
-      span_of(s.smooth_case_degc) < kLeastSwing_degc ? 1 : polynomial.coefficients.size();
+  const std::size_t terms = span(s.smooth_case_degc) < kLeastSwing_degc ? 1 : polynomial.coefficients.size();
   for (std::size_t i = 0; i < std::min(terms, polynomial.coefficients.size()); ++i) {
     ArrayXd column = power(s.smooth_degc - polynomial.reference, i);
     if (output != Output::frequency) column *= s.telemetry->amplitude.array();
@@ -184,7 +182,7 @@ void add_thermal(std::vector<BaselineColumn>& columns, const Simulation& s) {
 std::vector<BaselineColumn> baseline_columns(const Simulation& s) {
   std::vector<BaselineColumn> columns;
   add_polynomial(columns, s, Output::frequency, s.model.frequency_hz, "frequency.coefficients_hz");
-  const double swing = span_of(s.smooth_case_degc);
+  const double swing = span(s.smooth_case_degc);
   // A resonator that has not settled shows its start at any temperature, its time constant at none.
   if (s.telemetry->has_case && s.model.time_constant_s > 0.0) add_start(columns, s);
   if (s.telemetry->has_case && swing > kLeastSwing_degc) add_thermal(columns, s);

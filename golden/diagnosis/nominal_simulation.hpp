@@ -20,6 +20,9 @@ struct Trace {
 /// y[i-1]); tau <= 0: x itself.
 Eigen::ArrayXd lag(const Eigen::ArrayXd& x, double step_s, double tau_s, double start);
 
+/// Largest less smallest value; zero of nothing.
+double span(const Eigen::ArrayXd& x);
+
 /// Central differences over the step, one-sided at the ends.
 Eigen::ArrayXd slope_in_time(const Eigen::ArrayXd& x, double step_s);
 
@@ -40,7 +43,7 @@ struct Simulation {
   NominalModel model;
   double start_degc = 0.0;  ///< T[0] less case[0]
   Eigen::ArrayXd time_s;    ///< from the first row
-  Eigen::ArrayXd temperature_degc, temperature_slope;
+  Eigen::ArrayXd temperature_degc;
   /// Thermometers without their noise and steps, smoothed over kSmoothing_s: what an effect makes of T must
   /// not carry the noise that the nominal simulation has made of it.
   Eigen::ArrayXd board_degc, smooth_case_degc, smooth_degc, smooth_f;
