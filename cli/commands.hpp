@@ -29,6 +29,8 @@ void add_diagnose(CLI::App& app, Job& job);
 void add_report(CLI::App& app, Job& job);
 void add_export(CLI::App& app, Job& job);
 void add_prove(CLI::App& app, Job& job);
+void add_doctor(CLI::App& app, Job& job);
+void add_completion(CLI::App& app, Job& job);
 
 }  // namespace hemi::cli
 

@@ -9,11 +9,14 @@
 
 #include "cli/chain_run.hpp"
 #include "cli/commands.hpp"
+#include "cli/diagnose_core.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/interrupt.hpp"
 #include "cli/recording/progress.hpp"
 #include "cli/recording/write.hpp"
 #include "cli/report/diagnosis_report.hpp"
+#include "cli/separating_scenario.hpp"
+#include "cli/untestable.hpp"
 #include "golden/physics/effect.hpp"
 
 namespace hemi::cli {
@@ -144,6 +147,14 @@ Json limits(const TelemetryDiagnosis& result) {
   return list;
 }
 
+Json not_testable(const TelemetryDiagnosis& result, const DiagnosisInput& input) {
+  std::vector<std::string> tested;
+  for (const auto& family : result.hypotheses->families()) tested.push_back(family.effect);
+  Json list = Json::array();
+  for (const auto& each : untestable(input, tested)) list.push_back({{"id", each.id}, {"why", each.why}});
+  return list;
+}
+
 // A free function of an input, in units, that has no physical name.
 Json unknown_effect(const diagnosis::Remainder& remainder) {
   const auto list = [](const Eigen::VectorXd& v) { return std::vector<double>(v.begin(), v.end()); };
@@ -240,6 +251,7 @@ Json to_json(const TelemetryDiagnosis& result, const DiagnosisInput& input,
   for (const auto& pair : result.isolability.pairs)
     json["inseparable"].push_back({{"effects", {pair.one, pair.other}}, {"overlap", pair.overlap}});
   json["absent_channels"] = input.absent;
+  json["not_testable"] = not_testable(result, input);
   json["corrected_model"] = "corrected.model.json";
   return json;
 }
@@ -259,6 +271,9 @@ std::string to_text(const Json& json) {
     text += fmt::format("  {:<30} {}\n    experiment: {}\n", entry["id"].get<std::string>(),
                         entry["why_not_separable"].get<std::string>(),
                         entry["separating_experiment"].get<std::string>());
+  if (json.contains("separating_experiment"))
+    text += fmt::format("what would separate them: {}\n",
+                        json["separating_experiment"]["in_words"].get<std::string>());
   for (const auto& [channel, value] : json["improvement"].items())
     text += fmt::format(
         "{:<14} blocks left out: {:.4g} -> {:.4g} rms (noise {:.4g}), gain {:.3g} to {:.3g} (95 %)\n",
@@ -275,12 +290,7 @@ std::string to_text(const Json& json) {
   text += fmt::format("parameters moved: p {:.2g}; decoys accepted: {} of {}\n",
                       json["recalibration_p_value"].get<double>(), json["decoys"]["accepted"].get<int>(),
                       json["decoys"]["made"].get<int>());
-  if (!json["absent_channels"].empty()) {
-    text += "not recorded, so that effects in or by them cannot show:";
-    for (const auto& channel : json["absent_channels"]) text += " " + channel.get<std::string>();
-    text += "\n";
-  }
-  return text;
+  return text + untestable_text(json["not_testable"]);
 }
 
 recording::InstrumentModel corrected_model(const TelemetryDiagnosis& result,
@@ -288,7 +298,9 @@ recording::InstrumentModel corrected_model(const TelemetryDiagnosis& result,
   recording::InstrumentModel model = given;
   const auto& now = result.corrected;
   if (model.frequency) model.frequency->coefficients_hz = now.frequency_hz.coefficients;
-  if (model.thermal_time_constant_s) model.thermal_time_constant_s = now.time_constant_s;
+  // Zero: read without a case thermometer.
+  if (model.thermal_time_constant_s && now.time_constant_s > 0.0)
+    model.thermal_time_constant_s = now.time_constant_s;
   if (model.bias) model.bias->terms_dph = now.bias_dph;
   model.scale_factor = now.scale_factor;
   if (model.drive) model.drive->coefficients_v = now.drive_v.coefficients;
@@ -314,17 +326,20 @@ int diagnose_telemetry(const recording::Recording& recording, const DiagnoseTele
   TelemetryDiagnosis result;
   try {
     recording::Progress progress("diagnosis", 1.0);
-    search.tick = [&](double share) {
-      recording::check_interrupt();
-      progress.update(share);
-    };
+    search.check = recording::check_interrupt;
+    search.tick = [&](double share) { progress.update(share); };
     result = diagnosis::diagnose_telemetry(input.telemetry, nominal, search);
   } catch (const std::invalid_argument& error) {
     throw recording::InputError({.path = recording.path}, error.what(), "record longer");
   }
-  const Json json = to_json(result, input, recording, options.model);
+  Json json = to_json(result, input, recording, options.model);
+  const auto corrected = corrected_model(result, model);
+  recording::check_interrupt();
+  json["core"] = write_core(result, nominal, model, corrected, options.directory);
   const auto in = [&](const char* file) { return (fs::path(options.directory) / file).string(); };
-  recording::write_model(in("corrected.model.json"), corrected_model(result, model));
+  recording::write_model(in("corrected.model.json"), corrected);
+  add_separating_experiment(json, result, nominal, model, options.directory,
+                            {.tick = [](double) { recording::check_interrupt(); }});
   recording::write_text(in("diagnosis.json"), recording::json_text(json, 2) + "\n");
   report::write_diagnosis_report(
       in("report.html"), json, series_of(result, recording.find("time_s")->values[0]),
@@ -332,8 +347,8 @@ int diagnose_telemetry(const recording::Recording& recording, const DiagnoseTele
   if (options.json)
     fmt::print("{}\n", recording::json_text(json, 2));
   else
-    fmt::print("{}wrote {}, {}, {}\n", to_text(json), in("diagnosis.json"), in("corrected.model.json"),
-               in("report.html"));
+    fmt::print("{}{}wrote {}, {}, {}\n", to_text(json), core_text(json["core"]), in("diagnosis.json"),
+               in("corrected.model.json"), in("report.html"));
   return result.verdict == diagnosis::Verdict::consistent ? exit_good : exit_difference;
 }
 

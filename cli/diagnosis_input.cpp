@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "cli/recording/error.hpp"
 
@@ -49,19 +51,47 @@ VectorXd on_grid(const std::vector<double>& values, const Grid& grid) {
   return (count.array() > 0.0).select(sum.array() / count.array().max(1.0), kNothing);
 }
 
-// Missing values by a straight line between their neighbours, or held.
-void fill(VectorXd& x, bool straight) {
+// Slope at x[at], rows in units of one, of the parabola through up to `count` rows on one side of it; nothing
+// where too few are there.
+std::optional<double> end_slope(const VectorXd& x, Index at, Index count, int side) {
+  std::vector<double> offset, value;
+  for (Index k = 0; k < count && at + side * k >= 0 && at + side * k < x.size(); ++k)
+    if (!std::isnan(x[at + side * k])) {
+      offset.push_back(static_cast<double>(side * k));
+      value.push_back(x[at + side * k]);
+    }
+  constexpr std::size_t kLeast = 8;
+  if (offset.size() < kLeast) return std::nullopt;
+  const Eigen::Map<const VectorXd> t(offset.data(), static_cast<Index>(offset.size()));
+  const Eigen::Map<const VectorXd> y(value.data(), t.size());
+  Eigen::MatrixXd powers(t.size(), 3);
+  powers << VectorXd::Ones(t.size()), t, t.cwiseAbs2();
+  return powers.colPivHouseholderQr().solve(y)[1];
+}
+
+// Between two rows by a cubic with the slopes that the thermometer has on both sides; by a straight line, a
+// chamber that turns in a pause of 25 minutes would be missed by degrees.
+void bridge(VectorXd& x, Index last, Index next) {
+  constexpr Index kMostRows = 30;
+  const Index rows = std::min(next - last - 1, kMostRows);
+  const double length = static_cast<double>(next - last), rise = x[next] - x[last];
+  const auto before = end_slope(x, last, rows, -1), after = end_slope(x, next, rows, 1);
+  const bool curved = before && after;
+  const double left = curved ? *before * length - rise : 0.0, right = curved ? *after * length - rise : 0.0;
+  for (Index k = last + 1; k < next; ++k) {
+    const double u = static_cast<double>(k - last) / length, v = 1.0 - u;
+    x[k] = x[last] + u * rise + u * v * (v * left - u * right);
+  }
+}
+
+// Missing values from their neighbours on both sides, or held.
+void fill(VectorXd& x, bool smooth) {
   Index last = -1;
   for (Index i = 0; i < x.size(); ++i) {
     if (std::isnan(x[i])) continue;
-    for (Index k = last + 1; k < i; ++k) {
-      if (last < 0)
-        x[k] = x[i];
-      else if (straight)
-        x[k] = x[last] + (x[i] - x[last]) * static_cast<double>(k - last) / static_cast<double>(i - last);
-      else
-        x[k] = x[last];
-    }
+    if (smooth && last >= 0 && i > last + 1) bridge(x, last, i);
+    for (Index k = last + 1; k < i; ++k)
+      if (std::isnan(x[k])) x[k] = last < 0 ? x[i] : x[last];
     last = i;
   }
   for (Index k = last + 1; k < x.size(); ++k) x[k] = last < 0 ? 0.0 : x[last];
@@ -89,7 +119,7 @@ class Reader {
   Reader(const recording::Recording& recording, const Grid& grid, DiagnosisInput& input)
       : recording_(recording), grid_(grid), input_(input) {}
 
-  VectorXd input(const char* name, double rest, bool straight, bool* given = nullptr) {
+  VectorXd input(const char* name, double rest, bool smooth, bool* given = nullptr) {
     const auto* channel = recording_.find(name);
     if (given != nullptr) *given = channel != nullptr;
     if (channel == nullptr) {
@@ -97,7 +127,7 @@ class Reader {
       return VectorXd::Constant(grid_.places, rest);
     }
     VectorXd x = on_grid(channel->values, grid_);
-    fill(x, straight);
+    fill(x, smooth);
     return x;
   }
 
@@ -106,6 +136,38 @@ class Reader {
   const Grid& grid_;
   DiagnosisInput& input_;
 };
+
+// The resonator is its own thermometer: f(T) solved for T by Newton's method, from the row before.
+void read_temperature_from_frequency(const recording::Recording& recording,
+                                     const recording::InstrumentModel& model, DiagnosisInput& input) {
+  auto& frequency = input.telemetry.outputs[place(diagnosis::Output::frequency)];
+  if (frequency.size() == 0)
+    throw recording::InputError({.path = recording.path},
+                                "holds neither case_temp_degc nor frequency_hz, so that nothing tells the "
+                                "resonator's temperature",
+                                "record one of them");
+  const diagnosis::Polynomial f{model.frequency->reference_degc, model.frequency->coefficients_hz};
+  VectorXd hz = std::move(frequency);
+  frequency.resize(0);
+  fill(hz, true);
+  Eigen::ArrayXd degc = Eigen::ArrayXd::Constant(1, f.reference);
+  for (Index i = 0; i < hz.size(); ++i) {
+    constexpr int kSteps = 20;
+    for (int k = 0; k < kSteps; ++k) {
+      const double step = ((hz[i] - f.at(degc)) / f.slope(degc))[0];
+      if (!std::isfinite(step) || std::abs(degc[0] + step) > 1000.0)
+        throw recording::InputError({.path = recording.path, .line = 0, .row = 0, .channel = "frequency_hz"},
+                                    fmt::format("{} Hz is no frequency of the model's f(T)", hz[i]),
+                                    "give the model of this instrument");
+      degc += step;
+      if (std::abs(step) < 1e-9) break;
+    }
+    input.telemetry.case_degc[i] = degc[0];
+  }
+  input.notes.emplace_back(
+      "no case_temp_degc: the resonator's temperature is read from frequency_hz, which is not diagnosed "
+      "itself");
+}
 
 }  // namespace
 
@@ -117,6 +179,7 @@ DiagnosisInput telemetry_of(const recording::Recording& recording, const recordi
     input.notes.push_back(fmt::format("{} rows are averaged into one for effects slower than {:.3g} s",
                                       decimation,
                                       2.0 * static_cast<double>(decimation) / recording.sample_rate_hz));
+  input.averaged_rows = decimation;
   const Grid grid = grid_of(recording, decimation);
   Telemetry& t = input.telemetry;
   t.step_s = static_cast<double>(decimation) / recording.sample_rate_hz;
@@ -136,6 +199,7 @@ DiagnosisInput telemetry_of(const recording::Recording& recording, const recordi
       t.outputs[place(output)] = on_grid(channel->values, grid);
   }
   t.powered = powered_rows(t);
+  if (!t.has_case) read_temperature_from_frequency(recording, model, input);
   return input;
 }
 
@@ -148,7 +212,8 @@ diagnosis::NominalModel nominal_of(const recording::InstrumentModel& model,
                                 "calibrate the instrument first, or leave the channel out");
   };
   need(model.frequency.has_value(), "frequency", "frequency_hz");
-  need(model.thermal_time_constant_s.has_value(), "thermal", "frequency_hz");
+  if (recording.find("case_temp_degc") != nullptr)
+    need(model.thermal_time_constant_s.has_value(), "thermal", "frequency_hz");
   need(model.bias.has_value(), "bias", "rate_dph");
   need(model.frequency.has_value(), "frequency", "rate_dph");
   need(model.drive.has_value(), "drive", "drive_v");
@@ -156,7 +221,8 @@ diagnosis::NominalModel nominal_of(const recording::InstrumentModel& model,
   diagnosis::NominalModel nominal;
   if (model.frequency)
     nominal.frequency_hz = {model.frequency->reference_degc, model.frequency->coefficients_hz};
-  nominal.time_constant_s = model.thermal_time_constant_s.value_or(0.0);
+  const bool has_case = recording.find("case_temp_degc") != nullptr;
+  nominal.time_constant_s = has_case ? model.thermal_time_constant_s.value_or(0.0) : 0.0;
   if (model.bias) {
     nominal.bias_reference_hz = model.bias->reference_hz;
     nominal.bias_dph = model.bias->terms_dph;

@@ -41,15 +41,18 @@ int main(int argc, char** argv) {
   cli::add_report(app, job);
   cli::add_export(app, job);
   cli::add_prove(app, job);
+  cli::add_doctor(app, job);
+  cli::add_completion(app, job);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
     const auto chosen = app.get_subcommands();
+    // Before help is printed: hemi WRONG --help would get the program's own, and exit code 0.
     if (chosen.empty() && argc > 1 && argv[1][0] != '-') {
       fmt::print(stderr, "hemi: no command '{}'; hemi --help lists them\n", argv[1]);
       return cli::exit_bad_input;
     }
+    if (error.get_exit_code() == 0) return app.exit(error);
     fmt::print(stderr, "hemi: {}; see hemi {}--help\n", error.what(),
                chosen.empty() ? "" : chosen.front()->get_name() + " ");
     return cli::exit_bad_input;

@@ -43,10 +43,11 @@ report::Table allan_table(const AllanPage& page) {
 }
 
 Plot allan_plot(const AllanPage& page) {
-  Plot plot{.title = "Overlapping Allan deviation of " + page.channel,
-            .x = {"averaging time", "s", true},
-            .y = {"deviation", page.unit, true},
-            .note = "Bars: 68 % intervals."};
+  Plot plot{
+      .title = (page.separate ? "Allan deviation of " : "Overlapping Allan deviation of ") + page.channel,
+      .x = {"averaging time", "s", true},
+      .y = {"deviation", page.unit, true},
+      .note = "Bars: 68 % intervals."};
   Series series{.name = page.channel};
   for (const auto& p : page.result.points) {
     series.points.x.push_back(p.tau_s);
@@ -59,22 +60,26 @@ Plot allan_plot(const AllanPage& page) {
   if (const auto& walk = page.result.angle_random_walk)
     plot.guides.push_back({"angle random walk", first_s, walk->coefficient / std::sqrt(first_s), last_s,
                            walk->coefficient / std::sqrt(last_s)});
-  // The level that the curve touches: 0.664 of the instability.
-  const double floor = 0.664 * page.result.bias_instability;
-  plot.guides.push_back({"bias instability × 0.664", first_s, floor, last_s, floor});
+  if (const auto& flicker = page.result.flicker) {
+    const double floor = 0.664 * flicker->coefficient;
+    plot.guides.push_back({"bias instability × 0.664", first_s, floor, last_s, floor});
+  }
+  if (const auto& walk = page.result.rate_random_walk)
+    plot.guides.push_back({"rate random walk", first_s, walk->coefficient * std::sqrt(first_s / 3.0), last_s,
+                           walk->coefficient * std::sqrt(last_s / 3.0)});
   return plot;
 }
 
 std::string allan_verdict(const AllanPage& page) {
   const auto& r = page.result;
-  std::string text =
-      r.bias_instability_is_bound
-          ? fmt::format(
-                "The bias instability of {} is at most {}: its Allan deviation still falls "
-                "at {} s",
-                page.channel, with_unit(r.bias_instability, page.unit), nice_number(r.bias_instability_tau_s))
-          : fmt::format("The bias instability of {} is {}, at {} s", page.channel,
-                        with_unit(r.bias_instability, page.unit), nice_number(r.bias_instability_tau_s));
+  std::string text = r.flicker ? fmt::format("The bias instability of {} is {}, from {} to {} s",
+                                             page.channel, with_unit(r.flicker->coefficient, page.unit),
+                                             nice_number(r.flicker->from_s), nice_number(r.flicker->to_s))
+                               : fmt::format(
+                                     "The bias instability of {} is at most {}: its Allan deviation is "
+                                     "nowhere level, and least at {} s",
+                                     page.channel, with_unit(r.bias_instability, page.unit),
+                                     nice_number(r.bias_instability_tau_s));
   if (r.angle_random_walk && page.unit == "deg/h")
     text += fmt::format("; its angle random walk is {} deg/√h",
                         nice_number(r.angle_random_walk->deg_per_root_hour(), 4));
@@ -117,25 +122,26 @@ std::string write_allan_page(const std::string& target, const AllanPage& page) {
                           .subject = file_name(page.recording) + ", " + page.channel,
                           .verdict = allan_verdict(page),
                           .command = invocation()};
-  document.facts = {{"Samples", fmt::format("{}", page.stretch.size())},
-                    {"Interval", with_unit(page.interval_s, "s", 6)},
-                    {"Bias instability", (page.result.bias_instability_is_bound ? "at most " : "") +
-                                             with_unit(page.result.bias_instability, page.unit)}};
+  const auto& flicker = page.result.flicker;
+  document.facts = {
+      {"Samples", fmt::format("{}", page.samples)},
+      {"Interval", with_unit(page.interval_s, "s", 6)},
+      {"Bias instability", flicker ? with_unit(flicker->coefficient, page.unit)
+                                   : "at most " + with_unit(page.result.bias_instability, page.unit)}};
   if (const auto& walk = page.result.angle_random_walk)
     document.facts.push_back(
         {"Angle random walk", fmt::format("{} {}·√s, from {} to {} s", nice_number(walk->coefficient, 4),
                                           page.unit, nice_number(walk->from_s), nice_number(walk->to_s))});
+  if (const auto& walk = page.result.rate_random_walk)
+    document.facts.push_back(
+        {"Rate random walk", fmt::format("{} {}/√s, from {} to {} s", nice_number(walk->coefficient, 4),
+                                         page.unit, nice_number(walk->from_s), nice_number(walk->to_s))});
   if (page.bias_stability)
     document.facts.push_back({fmt::format("Bias stability, {:g} s averages", page.average_s),
                               with_unit(*page.bias_stability, page.unit)});
-  std::vector<double> time_s, values(page.stretch.begin(), page.stretch.end());
-  for (std::size_t i = 0; i < values.size(); ++i) time_s.push_back(static_cast<double>(i) * page.interval_s);
-  Plot samples{.title = page.channel,
-               .x = {"time since the first sample", "s"},
-               .y = {page.channel, page.unit},
-               .link = "time",
-               .note = "The longest stretch without a gap or a missing value."};
-  samples.series.push_back(Series::line(page.channel, time_s, values));
+  Plot samples{.title = page.channel, .x = {"time", "s"}, .y = {page.channel, page.unit}, .link = "time"};
+  samples.series.push_back(Series::line(page.channel, page.source.find("time_s")->values,
+                                        page.source.find(page.channel)->values, 1.5 * page.interval_s));
   Section table{"The figures", {}};
   table.parts.emplace_back(allan_table(page));
   document.sections = {section_of("Allan deviation", {allan_plot(page)}), std::move(table),

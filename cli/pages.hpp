@@ -30,11 +30,13 @@ std::string stretch_command(const std::string& recording);
 
 struct AllanPage {
   std::string recording, channel, unit;
-  const Eigen::VectorXd& stretch;
+  const recording::Recording& source;
   double interval_s;
   const calibration::AllanResult& result;
   double average_s;
   std::optional<double> bias_stability;
+  Eigen::Index samples = 0;  ///< that entered
+  bool separate = false;     ///< averages that do not overlap
 };
 /// All write their page to report::report_path(target, NAME), and return where.
 std::string write_allan_page(const std::string& target, const AllanPage& page);

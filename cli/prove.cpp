@@ -34,7 +34,7 @@ struct ProveOptions {
   std::uint64_t seed = 1;
   bool fresh = false;
   std::string cls{}, keep{}, program{}, directory = "proof", write_only{};
-  bool baselines = false;
+  bool baselines = false, json = false;
   double time_limit_s = 120.0, memory_mib = 4096.0;
 };
 
@@ -91,6 +91,10 @@ int write_only(const ProveOptions& options, const std::vector<prove::Task>& task
                           recording::json_text(prove::truth_json(hidden, tasks[i].name), 1) + "\n");
     progress.update(static_cast<double>(i + 1));
   }
+  if (options.json)
+    fmt::print("{}\n",
+               recording::json_text(
+                   {{"recordings", tasks.size()}, {"directory", options.write_only}, {"truths", truths}}, 2));
   return exit_good;
 }
 
@@ -137,7 +141,10 @@ int prove_all(const ProveOptions& options, const std::vector<prove::Task>& tasks
   recording::write_text((fs::path(options.directory) / "prove.json").string(),
                         recording::json_text(prove::to_json(report), 1) + "\n");
   recording::write_text((fs::path(options.directory) / "prove.md").string(), markdown);
-  fmt::print("{}", markdown);
+  if (options.json)
+    fmt::print("{}\n", recording::json_text(prove::to_json(report), 2));
+  else
+    fmt::print("{}", markdown);
   return prove::all_held(report) ? exit_good : exit_difference;
 }
 
@@ -184,6 +191,7 @@ void add_prove(CLI::App& app, Job& job) {
       ->capture_default_str();
   command->add_option("-o,--output", options->directory, "directory for prove.json and prove.md")
       ->capture_default_str();
+  command->add_flag("--json", options->json, "the figures as JSON instead of the tables");
   command->footer(
       "Example: hemi prove --cases 130 --jobs 2 --baselines -o proof\n"
       "Exit code 0 where every figure is at its target, 1 where not.");

@@ -5,6 +5,7 @@
 
 #include "cli/chain_run.hpp"
 #include "cli/commands.hpp"
+#include "cli/installed.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/interrupt.hpp"
 #include "cli/recording/write.hpp"
@@ -114,10 +115,10 @@ void report(const scenario::Scenario& scenario, const Outputs& outputs, const Si
 }
 
 int simulate(const SimulateOptions& options) {
-  scenario::Scenario scenario = scenario::read_scenario(options.scenario);
+  scenario::Scenario scenario = scenario::read_scenario(find_scenario(options.scenario));
   if (options.seed) scenario.seed = *options.seed;
   const Outputs outputs = outputs_of(scenario, options);
-  std::vector<std::string> inputs = {options.scenario};
+  std::vector<std::string> inputs = {scenario.path};
   if (!scenario.model_path.empty()) inputs.push_back(scenario.model_path);
   refuse_overwriting(outputs.all(), inputs);
   const scenario::Simulated simulated =
@@ -134,7 +135,9 @@ int simulate(const SimulateOptions& options) {
 void add_simulate(CLI::App& app, Job& job) {
   auto options = std::make_shared<SimulateOptions>();
   auto* command = app.add_subcommand("simulate", "A scenario to a recording and its instrument model");
-  command->add_option("scenario", options->scenario, "scenario (TOML); docs/scenarios.md has all keys")
+  command
+      ->add_option("scenario", options->scenario,
+                   "scenario (TOML), or the name of one that comes with hemi; docs/scenarios.md has all keys")
       ->required();
   command->add_option("-o,--output", options->directory, "directory for the files; made if need be")
       ->capture_default_str();
@@ -142,7 +145,7 @@ void add_simulate(CLI::App& app, Job& job) {
   command->add_flag("--hdf5", options->hdf5, "telemetry as NAME.h5 instead of NAME.csv and NAME.json");
   command->add_flag("--truth", options->truth, "the effects that were at work, as NAME.truth.json");
   command->add_flag("--json", options->json, "summary as JSON");
-  command->footer("Example: hemi simulate scripts/scenarios/cycles.toml -o runs --truth");
+  command->footer("Example: hemi simulate cycles -o runs --truth");
   command->callback([options, &job] { job = [options] { return simulate(*options); }; });
 }
 

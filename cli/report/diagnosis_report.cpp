@@ -143,6 +143,41 @@ Section proof_section(const Json& diagnosis, const std::vector<ReportSeries>& se
 Section open_section(const Json& diagnosis) {
   Section section{"What is not excluded", {}};
   if (Table table = limits_table(diagnosis); !table.rows.empty()) section.parts.emplace_back(table);
+  std::vector<std::string> absent;
+  if (const Json& list = member(diagnosis, "absent_channels"); list.is_array())
+    for (const Json& channel : list) absent.push_back(text_of(channel));
+  if (!absent.empty()) section.parts.emplace_back(Paragraph{"Not recorded: " + listed(absent) + "."});
+  if (Table table = not_testable_table(diagnosis); !table.rows.empty()) section.parts.emplace_back(table);
+  return section;
+}
+
+Section core_section(const Json& diagnosis) {
+  Section section{"What the core can compensate", {}};
+  const Json& core = member(diagnosis, "core");
+  if (const std::string why = text_of(member(core, "not_written")); !why.empty())
+    section.parts.emplace_back(Paragraph{"No registers: " + why + "."});
+  Table table{"Effects as functions of frequency and df/dt",
+              {"effect", "share of it in the rate", "share of it in the thermometer", "not"},
+              {},
+              {}};
+  if (const Json& list = member(core, "compensates"); list.is_array())
+    for (const Json& entry : list)
+      table.rows.push_back({in_words(text_of(member(entry, "id"))), cell(member(entry, "share_of_rate")),
+                            cell(member(entry, "share_of_temperature")), ""});
+  if (const Json& list = member(core, "cannot"); list.is_array())
+    for (const Json& entry : list)
+      table.rows.push_back({in_words(text_of(member(entry, "id"))), "", "", text_of(member(entry, "why"))});
+  if (!table.rows.empty()) section.parts.emplace_back(table);
+  if (const Json& figures = member(core, "bias_stability_dph"); figures.is_object())
+    section.parts.emplace_back(
+        Paragraph{fmt::format("Bias stability at rest, averages over {} s: {} deg/h as given, {} with the "
+                              "corrected model, {} in the core.",
+                              cell(member(figures, "averaged_over_s")), cell(member(figures, "before")),
+                              cell(member(figures, "after_model")), cell(member(figures, "after_core")))});
+  if (const std::string registers = text_of(member(core, "registers")); !registers.empty())
+    section.parts.emplace_back(Paragraph{
+        fmt::format("Registers: {}; the model that they were made from, for hemi export and hemi run: {}.",
+                    registers, text_of(member(core, "model")))});
   return section;
 }
 
@@ -201,7 +236,7 @@ void write_diagnosis_report(const std::string& path, const Json& diagnosis,
   for (Section& section :
        std::vector<Section>{where_section(diagnosis, series, page.time_unit), what_section(diagnosis),
                             proof_section(diagnosis, series, units), open_section(diagnosis),
-                            experiment_section(diagnosis), rest_section(diagnosis)})
+                            experiment_section(diagnosis), core_section(diagnosis), rest_section(diagnosis)})
     if (!section.parts.empty()) report.sections.push_back(std::move(section));
   write_report(path, report);
 }

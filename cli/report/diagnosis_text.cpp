@@ -239,9 +239,21 @@ Table alternatives_table(const Json& diagnosis) {
   for (const Json& entry : list) {
     std::string name = in_words(text_of(member(entry, "id")));
     if (const std::string form = text_of(member(entry, "form")); !form.empty()) name += " (" + form + ")";
-    table.rows.push_back({name, cell(member(entry, "score_gap")), text_of(member(entry, "why_not_separable")),
-                          text_of(member(entry, "separating_experiment"))});
+    std::string experiment = text_of(member(entry, "separating_experiment"));
+    if (const std::string words = text_of(member(entry, "experiment_in_words")); !words.empty())
+      experiment += ": " + words;
+    table.rows.push_back(
+        {name, cell(member(entry, "score_gap")), text_of(member(entry, "why_not_separable")), experiment});
   }
+  return table;
+}
+
+Table not_testable_table(const Json& diagnosis) {
+  Table table{"What this recording cannot show at all", {"effect", "why"}, {}, {}};
+  const Json& list = member(diagnosis, "not_testable");
+  if (!list.is_array()) return table;
+  for (const Json& entry : list)
+    table.rows.push_back({in_words(text_of(member(entry, "id"))), text_of(member(entry, "why"))});
   return table;
 }
 

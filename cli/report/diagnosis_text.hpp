@@ -43,6 +43,8 @@ Table located_table(const recording::Json& diagnosis, const std::string& time_un
 Table parameter_table(const recording::Json& effect);
 Table limits_table(const recording::Json& diagnosis);
 Table alternatives_table(const recording::Json& diagnosis);
+/// Effects that the recording cannot show, and why.
+Table not_testable_table(const recording::Json& diagnosis);
 
 }  // namespace hemi::report
 

@@ -249,12 +249,13 @@ physics::Environment Inputs::at(double time_s) const {
   e.amplitude_setpoint = setpoint.value(time_s);
   e.quadrature_trim_v = trim_v.value(time_s);
   e.power_on_s = power_on_s;
+  e.board_heater_degc = heater_degc.value(time_s);
   return e;
 }
 
 double Inputs::end_s() const {
   return std::max({chamber_degc.end_s(), rate_dph.end_s(), accel_g.end_s(), supply_v.end_s(),
-                   setpoint.end_s(), trim_v.end_s()});
+                   setpoint.end_s(), trim_v.end_s(), heater_degc.end_s()});
 }
 
 Inputs read_inputs(const Section& scenario) {
@@ -269,6 +270,7 @@ Inputs read_inputs(const Section& scenario) {
   inputs.power_on_s = section.quantity("power_on", {"s", -1e9, 1e9}, 0.0);
   inputs.setpoint = read_plain(scenario, {"amplitude", "setpoint", {"1", 1e-3, 10.0}, 1.0});
   inputs.trim_v = read_plain(scenario, {"quadrature", "trim_v", {"V", -1000.0, 1000.0}, 0.0});
+  inputs.heater_degc = read_plain(scenario, {"board", "heater_degc", {"degC", 0.0, 100.0}, 0.0});
   return inputs;
 }
 

@@ -18,6 +18,7 @@ struct Inputs {
   Signal supply_v{5.0};
   Signal setpoint{1.0};
   Signal trim_v{0.0};
+  Signal heater_degc{0.0};
   double power_on_s = 0.0;
   double scale_factor = 1.0;  ///< rate that the instrument feels over rate_dph
 
@@ -27,8 +28,8 @@ struct Inputs {
 };
 
 /// Sections of a scenario that hold inputs.
-inline constexpr std::array<std::string_view, 6> kInputSections = {"chamber",  "table",     "supply",
-                                                                   "attitude", "amplitude", "quadrature"};
+inline constexpr std::array<std::string_view, 7> kInputSections = {
+    "chamber", "table", "supply", "attitude", "amplitude", "quadrature", "board"};
 
 /// InputError for whatever docs/scenarios.md does not allow.
 Inputs read_inputs(const Section& scenario);

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <random>
 
 #include "golden/diagnosis/effect_search.hpp"
+#include "golden/diagnosis/form_error.hpp"
 
 namespace hemi::diagnosis {
 namespace {
@@ -17,7 +19,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 constexpr Index kFolds = 8;
-constexpr Index kBootstrapBlocks = 40;
+constexpr Index kStretches =
+    40;  // a fold is every eighth of them: the rest still spans the recording's range
+// Innovations hardly depend on each other; and an effect may act in a few stretches alone.
+constexpr Index kInnovations = 160;
 constexpr double kNormal95 = 1.959963984540054;
 constexpr double kDetectable = 5.0;
 constexpr double kShapeStep = 0.01;
@@ -90,40 +95,53 @@ std::vector<Index> block_numbers(const RowSpace& space) {
   return numbers;
 }
 
-MatrixXd rows_where(const MatrixXd& from, const std::vector<Index>& number, Index low, Index high,
-                    bool inside) {
-  std::vector<Index> kept;
-  for (std::size_t i = 0; i < number.size(); ++i)
-    if ((number[i] >= low && number[i] < high) == inside) kept.push_back(static_cast<Index>(i));
-  return from(kept, Eigen::all);
+// Places of the stacked rows whose block is one of the kept.
+template <typename Kept>
+std::vector<Index> rows_where(const std::vector<Index>& block, const Kept& kept) {
+  std::vector<Index> rows;
+  for (std::size_t i = 0; i < block.size(); ++i)
+    if (kept(block[i])) rows.push_back(static_cast<Index>(i));
+  return rows;
 }
 
-// Residual of every row, its own block left out of the fit.
-Reduced left_out(const Hypotheses& h, const Reduced& design, const Noise& noise) {
+Index fold_of(const RowSpace& space, Index block) {
+  return block * kStretches / space.block_count() % kFolds;
+}
+
+// Residuals of every row, the stretches of its fold left out of the fit: in units of the outputs, and
+// innovations. These are taken with one set of parameters throughout: where a fold ends another's would jump.
+struct LeftOut {
+  Reduced residual;
+  VectorXd white;
+};
+
+LeftOut left_out(const Hypotheses& h, const Reduced& design, const Noise& noise) {
   const RowSpace& space = h.space();
   const MatrixXd white = whiten(space, noise, design);
   const VectorXd y = whiten(space, noise, h.data());
   const auto numbers = block_numbers(space);
   const VectorXd prior = h.prior_precision(design[0].cols());
-  Reduced residual = h.data();
+  LeftOut result{h.data(), y};
   for (Index fold = 0; fold < kFolds; ++fold) {
-    const Index low = fold * space.block_count() / kFolds, high = (fold + 1) * space.block_count() / kFolds;
-    const MatrixXd rest = rows_where(white, numbers, low, high, false);
-    const VectorXd c = Solver(rest, prior).solve(rest.transpose() * rows_where(y, numbers, low, high, false));
+    const auto kept = rows_where(numbers, [&](Index block) { return fold_of(space, block) != fold; });
+    const auto out = rows_where(numbers, [&](Index block) { return fold_of(space, block) == fold; });
+    const MatrixXd rest = white(kept, Eigen::all);
+    const VectorXd c = Solver(rest, prior).solve(rest.transpose() * VectorXd(y(kept)));
+    result.white(out) -= white(out, Eigen::all) * c;
     for (const Output output : kOutputs) {
       const std::size_t k = place(output);
       const auto& blocks = space.blocks(output);
       for (std::size_t i = 0; i < blocks.size(); ++i)
-        if (blocks[i] >= low && blocks[i] < high)
-          residual[k](static_cast<Index>(i), 0) -= design[k].row(static_cast<Index>(i)).dot(c);
+        if (fold_of(space, blocks[i]) == fold)
+          result.residual[k](static_cast<Index>(i), 0) -= design[k].row(static_cast<Index>(i)).dot(c);
     }
   }
-  return residual;
+  return result;
 }
 
-std::vector<RowRange> even_blocks(Index rows) {
+std::vector<RowRange> even_blocks(Index rows, Index most) {
   std::vector<RowRange> blocks;
-  const Index count = std::min(kBootstrapBlocks, rows);
+  const Index count = std::min(most, rows);
   for (Index b = 0; b < count; ++b) {
     const Index begin = b * rows / count;
     blocks.push_back({begin, (b + 1) * rows / count - begin});
@@ -137,24 +155,24 @@ std::vector<Improvement> improvements(Hypotheses& h, const std::vector<Member>& 
                                       const HypothesisFit& fit) {
   std::vector<Improvement> list;
   const HypothesisFit baseline = h.fit({}, fit.noise);
-  const Reduced before = left_out(h, h.baseline_rows(), fit.noise);
-  const Reduced after = left_out(h, extended(h, members, fit).rows, fit.noise);
+  const LeftOut before = left_out(h, h.baseline_rows(), fit.noise);
+  const LeftOut after = left_out(h, extended(h, members, fit).rows, fit.noise);
+  Index begin = 0;
   for (const Output output : kOutputs) {
     const std::size_t c = place(output);
     const bool acts =
         std::ranges::any_of(members, [&](const Member& m) { return h.columns(m)[c].squaredNorm() > 0.0; });
     const Index rows = h.space().rows(output);
+    const Index first = begin;
+    begin += rows;
     if (!acts || rows < kFolds) continue;
-    const auto blocks = even_blocks(rows);
+    const auto blocks = even_blocks(rows, kStretches), short_blocks = even_blocks(rows, kInnovations);
     Improvement entry;
     entry.output = output;
     entry.train = bootstrap_gain(baseline.residual[c].col(0), fit.residual[c].col(0), blocks, 11);
-    entry.held_out = bootstrap_gain(before[c].col(0), after[c].col(0), blocks, 12);
-    const auto noise = coloured_noise(fit.noise[c], h.space().block_count());
-    const auto white = [&](const Reduced& residual) -> VectorXd {
-      return whiten(residual[c], h.space().blocks(output), noise).col(0);
-    };
-    entry.held_out_white = bootstrap_gain(white(before), white(after), blocks, 13);
+    entry.held_out = bootstrap_gain(before.residual[c].col(0), after.residual[c].col(0), blocks, 12);
+    entry.held_out_white =
+        bootstrap_gain(before.white.segment(first, rows), after.white.segment(first, rows), short_blocks, 13);
     entry.floor_rms = std::sqrt(coloured_noise(h.expected()[c], h.space().block_count()).total_variance());
     list.push_back(entry);
   }
@@ -164,9 +182,13 @@ std::vector<Improvement> improvements(Hypotheses& h, const std::vector<Member>& 
 std::vector<std::vector<Interval>> intervals(Hypotheses& h, const std::vector<Member>& members,
                                              const HypothesisFit& fit) {
   const Extended all = extended(h, members, fit);
-  const MatrixXd white = whiten(h.space(), fit.noise, all.rows);
-  const MatrixXd covariance =
-      Solver(white, padded(h.prior_precision(fit.coefficients.size()), white.cols())).covariance();
+  std::vector<std::size_t> each(members.size());
+  std::iota(each.begin(), each.end(), 0U);
+  const Reduced forms = form_directions(h, members, fit, each);
+  const MatrixXd white = whiten(h.space(), fit.noise, joined({&all.rows, &forms}));
+  VectorXd prior = padded(h.prior_precision(fit.coefficients.size()), white.cols());
+  prior.tail(forms[0].cols()).setOnes();
+  const MatrixXd covariance = Solver(white, prior).covariance();
   std::vector<std::vector<Interval>> list;
   for (std::size_t m = 0; m < members.size(); ++m) {
     const auto& family = h.families()[members[m].family];
@@ -214,26 +236,26 @@ std::optional<double> halves_disagree(Hypotheses& h, const std::vector<Member>& 
   const VectorXd y = whiten(h.space(), fit.noise, h.data());
   const auto numbers = block_numbers(h.space());
   const Index half = h.space().block_count() / 2;
-  const Index count = h.columns(members[which])[0].cols();
+  const Index first = fit.first[which], count = h.columns(members[which])[0].cols();
   std::array<VectorXd, 2> c;
   std::array<MatrixXd, 2> covariance;
-  for (const bool first : {true, false}) {
-    const MatrixXd rows = rows_where(white, numbers, 0, half, first);
+  for (const bool early : {true, false}) {
+    const auto kept = rows_where(numbers, [&](Index block) { return (block < half) == early; });
+    const MatrixXd rows = white(kept, Eigen::all);
     const Solver solver(rows, h.prior_precision(white.cols()));
-    const VectorXd all = solver.solve(rows.transpose() * rows_where(y, numbers, 0, half, first));
-    const std::size_t k = first ? 0 : 1;
-    c[k] = all.segment(fit.first[which], count);
-    covariance[k] = solver.covariance().block(fit.first[which], fit.first[which], count, count);
+    const VectorXd all = solver.solve(rows.transpose() * VectorXd(y(kept)));
+    c[early ? 0 : 1] = all.segment(first, count);
+    covariance[early ? 0 : 1] = solver.covariance().block(first, first, count, count);
   }
-  double most = 0.0;
-  const VectorXd whole = fit.coefficients.segment(fit.first[which], count);
-  for (Index i = 0; i < count; ++i) {
-    const double deviation = std::sqrt(covariance[0](i, i) + covariance[1](i, i));
-    // A half that knows a coefficient to no better than its size says nothing of it.
-    if (deviation > std::abs(whole[i])) continue;
-    most = std::max(most, std::abs(c[0][i] - c[1][i]) / std::max(deviation, 0.1 * std::abs(whole[i])));
-  }
-  return most;
+  // What the halves say of the trace itself: coefficients that stand in for each other may differ.
+  const MatrixXd own = white.middleCols(first, count);
+  const MatrixXd products = own.transpose() * own;
+  const VectorXd whole = fit.coefficients.segment(first, count), difference = c[0] - c[1];
+  const double size = whole.dot(products * whole);
+  const double noise = ((covariance[0] + covariance[1]) * products).trace();
+  // A half that knows the trace to no better than its size says nothing of it.
+  if (noise > size) return std::nullopt;
+  return std::sqrt(difference.dot(products * difference) / std::max(noise, 0.01 * size));
 }
 
 Isolability isolability(Hypotheses& h, const Noise& noise) {

@@ -17,9 +17,9 @@ struct Improvement {
   double floor_rms = 0.0;  ///< noise that is expected of rows of this length
 };
 
-/// Free runs of the baseline and of a set of effects from the inputs alone, parameters of both without each
-/// of eight contiguous blocks in turn, shapes moved along with the coefficients (one Gauss-Newton step). One
-/// entry for every output that a member acts on.
+/// Free runs of the baseline and of a set of effects from the inputs alone, parameters of both without every
+/// eighth of forty contiguous stretches in turn, shapes moved along with the coefficients (one Gauss-Newton
+/// step). One entry for every output that a member acts on.
 std::vector<Improvement> improvements(Hypotheses& hypotheses, const std::vector<Member>& members,
                                       const HypothesisFit& fit);
 
@@ -29,12 +29,13 @@ struct Interval {
   double low = 0.0, high = 0.0;
 };
 
-/// Figures of each member; covariance of coefficients and log shapes together, by the delta method.
+/// Figures of each member; covariance of coefficients and log shapes together, by the delta method, beside
+/// what the forms may be wrong by (form_directions).
 std::vector<std::vector<Interval>> intervals(Hypotheses& hypotheses, const std::vector<Member>& members,
                                              const HypothesisFit& fit);
 
-/// Largest disagreement between the two halves of a recording over a member's coefficients, in standard
-/// deviations; nothing where a half cannot tell them.
+/// Disagreement between the two halves of a recording over a member's trace, in standard deviations, a tenth
+/// of the trace at least; nothing where a half cannot tell it.
 std::optional<double> halves_disagree(Hypotheses& hypotheses, const std::vector<Member>& members,
                                       std::size_t which, const HypothesisFit& fit);
 

@@ -37,13 +37,23 @@ void take_off(const MatrixXd& set, const VectorXd& prior, MatrixXd& columns) {
     if (columns.col(j).norm() < 1e-6 * before[j]) columns.col(j).setZero();
 }
 
-// e' C (C'C)^-1 C' e over a set of columns given by products.
-double explained(const MatrixXd& products, const VectorXd& with_data) {
+// Coefficients of a set of columns given by products.
+VectorXd solved(const MatrixXd& products, const VectorXd& with_data) {
   const VectorXd size = products.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   MatrixXd normal = size.asDiagonal() * products * size.asDiagonal();
   normal.diagonal().array() += 1e-9;
-  const VectorXd right = size.asDiagonal() * with_data;
-  return right.dot(normal.ldlt().solve(right));
+  return size.asDiagonal() * normal.ldlt().solve(size.asDiagonal() * with_data);
+}
+
+// e' C (C'C)^-1 C' e over them.
+double explained(const MatrixXd& products, const VectorXd& with_data) {
+  return with_data.dot(solved(products, with_data));
+}
+
+// The second of a pair that no recording of one clock can part.
+const std::string& kind_of(const std::string& effect) {
+  static const std::string kOfClock = "oscillator_ageing", kOfResonator = "frequency_ageing";
+  return effect == kOfClock ? kOfResonator : effect;
 }
 
 }  // namespace
@@ -98,9 +108,18 @@ EffectSearch::Gains EffectSearch::gains(const Members& set, const Noise& noise) 
   result.with_data = all.col(at).head(at);
   for (std::size_t i = 0; i < result.members.size(); ++i)
     result.gain.push_back(
-        explained(result.products.block(result.begin[i], result.begin[i], result.count[i], result.count[i]),
-                  result.with_data.segment(result.begin[i], result.count[i])));
+        gain(result.members[i],
+             result.products.block(result.begin[i], result.begin[i], result.count[i], result.count[i]),
+             result.with_data.segment(result.begin[i], result.count[i])));
   return result;
+}
+
+double EffectSearch::gain(const Member& member, const MatrixXd& products, const VectorXd& with_data) const {
+  const VectorXd c = solved(products, with_data);
+  const auto& family = hypotheses_.families()[member.family];
+  if (family.possible && !family.possible(hypotheses_.simulation(), {c.begin(), c.end()}, member.shape))
+    return 0.0;
+  return with_data.dot(c);
 }
 
 Member EffectSearch::refined(const Member& member, const Members& others, const Noise& noise) {
@@ -108,7 +127,7 @@ Member EffectSearch::refined(const Member& member, const Members& others, const 
   if (family.spacing.empty()) return member;
   const MatrixXd own = whiten(hypotheses_.space(), noise, hypotheses_.design(others));
   const VectorXd prior = hypotheses_.prior_precision(own.cols());
-  const auto gain = [&](const std::vector<double>& shape) {
+  const auto gain_at = [&](const std::vector<double>& shape) {
     const auto traces = family.columns(hypotheses_.simulation(), shape);
     std::vector<const Trace*> list;
     for (const auto& trace : traces) list.push_back(&trace);
@@ -117,17 +136,17 @@ Member EffectSearch::refined(const Member& member, const Members& others, const 
     take_off(own, prior, columns);
     const MatrixXd all = columns.transpose() * columns;
     const Index n = all.cols() - 1;
-    return explained(all.topLeftCorner(n, n), all.col(n).head(n));
+    return gain({member.family, shape}, all.topLeftCorner(n, n), all.col(n).head(n));
   };
   Member best = member;
-  double most = gain(best.shape);
+  double most = gain_at(best.shape);
   double share = 0.5;
   for (int round = 0; round < kRefinements; ++round, share *= 0.5)
     for (std::size_t d = 0; d < family.spacing.size(); ++d)
       for (const double sign : {1.0, -1.0}) {
         auto shape = best.shape;
         shape[d] *= std::pow(family.spacing[d], sign * share);
-        const double found = gain(shape);
+        const double found = gain_at(shape);
         if (found <= most) continue;
         most = found;
         best.shape = shape;
@@ -140,7 +159,8 @@ std::vector<Members> EffectSearch::proposals(const Members& set, bool pairs) {
   std::vector<Members> list;
   const auto& families = hypotheses_.families();
   const auto taken = [&](const std::string& effect) {
-    return std::ranges::any_of(set, [&](const Member& m) { return families[m.family].effect == effect; });
+    return std::ranges::any_of(
+        set, [&](const Member& m) { return kind_of(families[m.family].effect) == kind_of(effect); });
   };
   const auto own = hypotheses_.fit(set).noise;
   for (const Noise& noise : {hypotheses_.expected(), own}) {
@@ -173,7 +193,7 @@ std::vector<Members> EffectSearch::proposals(const Members& set, bool pairs) {
       for (std::size_t b = a + 1; b < all.members.size(); ++b) {
         const auto& one = families[all.members[a].family].effect;
         const auto& two = families[all.members[b].family].effect;
-        if (one == two || taken(one) || taken(two)) continue;
+        if (kind_of(one) == kind_of(two) || taken(one) || taken(two)) continue;
         const Index n = all.count[a], m = all.count[b];
         MatrixXd products(n + m, n + m);
         products << all.products.block(all.begin[a], all.begin[a], n, n),
@@ -218,6 +238,23 @@ ScoredSet EffectSearch::pruned(ScoredSet set) {
   return set;
 }
 
+ScoredSet EffectSearch::worthy(ScoredSet set, std::vector<double>& without) {
+  for (;;) {
+    without.clear();
+    std::size_t least = 0;
+    std::vector<ScoredSet> fewer;
+    for (std::size_t i = 0; i < set.members.size(); ++i) {
+      Members others = set.members;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      fewer.push_back(scored(std::move(others)));
+      without.push_back(fewer.back().score - set.score);
+      if (without[i] < without[least]) least = i;
+    }
+    if (without.empty() || without[least] >= kWorth) return set;
+    set = std::move(fewer[least]);
+  }
+}
+
 std::vector<Rival> EffectSearch::rivals_of(const ScoredSet& best, std::size_t place) {
   Members others = best.members;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(place));
@@ -230,7 +267,7 @@ std::vector<Rival> EffectSearch::rivals_of(const ScoredSet& best, std::size_t pl
   for (std::size_t i = 0; i < all.members.size(); ++i) {
     const auto& effect = families[all.members[i].family].effect;
     const bool taken = effect == mine || std::ranges::any_of(others, [&](const Member& m) {
-                         return families[m.family].effect == effect;
+                         return kind_of(families[m.family].effect) == kind_of(effect);
                        });
     if (taken) continue;
     const auto found = nearest.find(effect);
@@ -264,12 +301,8 @@ SearchResult EffectSearch::run() {
     if (next.score >= best.score) break;
     best = std::move(next);
   }
-  for (std::size_t i = 0; i < best.members.size(); ++i) {
-    Members fewer = best.members;
-    fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
-    result.without.push_back(scored(std::move(fewer)).score - best.score);
-    result.rivals.push_back(rivals_of(best, i));
-  }
+  best = worthy(std::move(best), result.without);
+  for (std::size_t i = 0; i < best.members.size(); ++i) result.rivals.push_back(rivals_of(best, i));
   result.best = std::move(best);
   return result;
 }

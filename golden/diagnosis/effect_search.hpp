@@ -5,6 +5,9 @@
 
 namespace hemi::diagnosis {
 
+/// What an effect must gain beyond its price to stay [-2 log likelihood].
+inline constexpr double kWorth = 8.0;
+
 /// A set of effects with what it costs: -2 log likelihood, and a penalty for every effect (choice among the
 /// catalogue, its coefficients, its shapes).
 struct ScoredSet {
@@ -38,7 +41,8 @@ class EffectSearch {
   ScoredSet scored(std::vector<Member> members);
   /// The member with its shape moved to where it explains most beside `others`.
   Member refined(const Member& member, const std::vector<Member>& others, const Noise& noise);
-  /// Gain of every grid point of every family beside a set; squares of the whitened residual.
+  /// Gain of every grid point of every family beside a set, squares of the whitened residual; 0 where the
+  /// coefficients are not possible.
   struct Gains {
     std::vector<Member> members;
     std::vector<double> gain;
@@ -50,8 +54,11 @@ class EffectSearch {
   double penalty(const Member& member) const;
 
  private:
+  double gain(const Member& member, const Eigen::MatrixXd& products, const Eigen::VectorXd& with_data) const;
   std::vector<std::vector<Member>> proposals(const std::vector<Member>& set, bool pairs);
   ScoredSet pruned(ScoredSet set);
+  /// Without the members that are not worth kWorth; `without` of the rest.
+  ScoredSet worthy(ScoredSet set, std::vector<double>& without);
   std::vector<Rival> rivals_of(const ScoredSet& best, std::size_t place);
 
   Hypotheses& hypotheses_;

@@ -70,19 +70,23 @@ EffectFamily deviation(const char* effect, Output output, int exponent) {
     const auto& polynomial = drive ? s.model.drive_v : s.model.quadrature_v;
     const ArrayXd rest = c[0] * beyond_polynomial(s, shift(s, shape), polynomial.coefficients.size());
     if (!drive) return std::vector<Figure>{{"span", "V", span(rest)}};
-    // The peak itself is not the deviation from the best polynomial but from the nominal one.
-    return std::vector<Figure>{
-        {"peak", "1", (c[0] * shift(s, shape) / polynomial.at(s.smooth_degc)).abs().maxCoeff()}};
+    return std::vector<Figure>{{"peak", "1", (rest / polynomial.at(s.smooth_degc)).abs().maxCoeff()}};
   };
   return family;
 }
 
-EffectFamily gas_leak() {
+EffectFamily gas_leak(bool filling) {
   EffectFamily family;
   family.effect = "gas_leak";
-  family.form = "drive = drive (1 + r t)";
-  family.columns = [](const Simulation& s, const Shape&) {
-    return std::vector<Trace>{in(Output::drive, command(s, Output::drive) * s.time_s / kHour_s)};
+  family.form = filling ? "drive = drive (1 + r t0 (1 - exp(-t / t0)))" : "drive = drive (1 + r t)";
+  if (filling) {
+    family.grid = geometric_grid(5.0, 80.0, 2.0);
+    family.spacing = {2.0};
+  }
+  family.columns = [](const Simulation& s, const Shape& shape) {
+    const ArrayXd hours = s.time_s / kHour_s;
+    const ArrayXd grown = shape.empty() ? hours : ArrayXd(shape[0] * (1.0 - (-hours / shape[0]).exp()));
+    return std::vector<Trace>{in(Output::drive, command(s, Output::drive) * grown)};
   };
   family.figures = [](const Simulation&, const Shape& c, const Shape&) {
     return std::vector<Figure>{{"rate", "1/h", c[0]}};
@@ -140,7 +144,7 @@ EffectFamily pickoff_gain(double rate_sign, bool quadrature) {
 }
 
 void add_drive(std::vector<EffectFamily>& families, const Telemetry& t) {
-  families.push_back(gas_leak());
+  for (const bool filling : {false, true}) families.push_back(gas_leak(filling));
   if (moves(t.case_degc, 1.0)) {
     for (const int exponent : {0, 2, 3})
       families.push_back(deviation("damping_temperature", Output::drive, exponent));

@@ -11,6 +11,9 @@ namespace {
 using Eigen::ArrayXd;
 using Shape = std::vector<double>;
 constexpr double kTimeRatio = 1.6;
+constexpr double kLagRatio = 1.5;
+constexpr double kSlowest_s = 600.0;  // what is over sooner is no ageing
+constexpr double kMostAgeing_ppm = 20.0;
 constexpr double kSecondsADay = 86400.0;
 
 // The clock's own: the count moves, the rate does not.
@@ -38,25 +41,43 @@ EffectFamily polynomial_order(int terms) {
   return family;
 }
 
-using Curve = ArrayXd (*)(const ArrayXd& time_s, double t0);
+// How ageing goes on; the same for the resonator and for the clock that it is counted with.
+struct Curve {
+  const char* text;
+  ArrayXd (*at)(const ArrayXd& time_s, double t0);
+  bool shaped;
+};
+constexpr Curve kCurves[] = {
+    {"t", [](const ArrayXd& t, double length) -> ArrayXd { return t / length; }, false},
+    {"(1 - exp(-t / t0))", [](const ArrayXd& t, double t0) -> ArrayXd { return 1.0 - (-t / t0).exp(); },
+     true},
+    {"ln(1 + t / t0)", [](const ArrayXd& t, double t0) -> ArrayXd { return (1.0 + t / t0).log(); }, true}};
 
-EffectFamily ageing(const Simulation& s, const char* form, Curve curve, bool shaped) {
+EffectFamily ageing(const Simulation& s, const Curve& curve, bool of_clock) {
   EffectFamily family;
-  family.effect = "frequency_ageing";
-  family.form = form;
+  family.effect = of_clock ? "oscillator_ageing" : "frequency_ageing";
+  family.form = (of_clock ? "f = f (1 - a " : "f += a ") + std::string(curve.text) + (of_clock ? ")" : "");
   const double length = s.time_s[s.time_s.size() - 1];
-  if (shaped) {
-    family.grid = geometric_grid(60.0, 3.0 * length, kTimeRatio);
+  family.grid = {{length}};
+  if (curve.shaped) {
+    family.grid = geometric_grid(std::min(kSlowest_s, length), 3.0 * length, kTimeRatio);
     family.spacing = {kTimeRatio};
-  } else {
-    family.grid = {{length}};
   }
-  family.columns = [curve](const Simulation& at, const Shape& shape) {
-    return std::vector<Trace>{at.frequency(curve(at.time_s, shape[0]))};
+  const auto shift = curve.at;
+  family.columns = [shift, of_clock](const Simulation& at, const Shape& shape) {
+    const ArrayXd y = shift(at.time_s, shape[0]);
+    if (!of_clock) return std::vector<Trace>{at.frequency(y)};
+    return std::vector<Trace>{counted(-1e-6 * (at.f + at.model.bias_reference_hz) * y)};
   };
-  family.figures = [curve](const Simulation& at, const Shape& c, const Shape& shape) {
-    const ArrayXd shift = curve(at.time_s, shape[0]);
-    return std::vector<Figure>{{"total", "Hz", c[0] * (shift[shift.size() - 1] - shift[0])}};
+  family.figures = [shift, of_clock](const Simulation& at, const Shape& c, const Shape& shape) {
+    const ArrayXd y = shift(at.time_s, shape[0]);
+    const double total = c[0] * (y[y.size() - 1] - y[0]);
+    if (!of_clock) return std::vector<Figure>{{"total", "Hz", total}};
+    return std::vector<Figure>{{"rate", "ppm/day", total * kSecondsADay / span(at.time_s)}};
+  };
+  family.possible = [shift, of_clock](const Simulation& at, const Shape& c, const Shape& shape) {
+    const double total = std::abs(c[0]) * span(shift(at.time_s, shape[0]));
+    return (of_clock ? total : 1e6 * total / at.model.bias_reference_hz) < kMostAgeing_ppm;
   };
   return family;
 }
@@ -86,19 +107,6 @@ EffectFamily oscillator_temperature(int order) {
   return family;
 }
 
-EffectFamily oscillator_ageing() {
-  EffectFamily family;
-  family.effect = "oscillator_ageing";
-  family.form = "f = f (1 - r t)";
-  family.columns = [](const Simulation& s, const Shape&) {
-    return std::vector<Trace>{counted(-1e-6 / kSecondsADay * (s.f + s.model.bias_reference_hz) * s.time_s)};
-  };
-  family.figures = [](const Simulation&, const Shape& c, const Shape&) {
-    return std::vector<Figure>{{"rate", "ppm/day", c[0]}};
-  };
-  return family;
-}
-
 // df/f = s (x^2 - 1): x the amplitude, or the supply in units of its median.
 EffectFamily square_of_input(const char* effect, const char* form, const Eigen::VectorXd& input) {
   EffectFamily family;
@@ -120,7 +128,8 @@ EffectFamily loop_lag(const Simulation& s) {
   EffectFamily family;
   family.effect = "pll_lag";
   family.form = "tau_p f_out' = f - f_out";
-  family.grid = geometric_grid(2.0 * s.telemetry->step_s, 300.0 * s.telemetry->step_s, 2.0);
+  family.grid = geometric_grid(2.0 * s.telemetry->step_s, 300.0 * s.telemetry->step_s, kLagRatio);
+  family.spacing = {kLagRatio};
   family.columns = [](const Simulation& at, const Shape& shape) {
     return std::vector<Trace>{
         counted(lag(at.smooth_f, at.telemetry->step_s, shape[0], at.smooth_f[0]) - at.smooth_f)};
@@ -128,7 +137,7 @@ EffectFamily loop_lag(const Simulation& s) {
   family.figures = [](const Simulation&, const Shape& c, const Shape& shape) {
     return std::vector<Figure>{{"time_constant", "s", c[0] * shape[0]}};
   };
-  family.possible = [](const Simulation&, const Shape& c, const Shape&) { return c[0] > 0.0; };
+  family.possible = [](const Simulation&, const Shape& c, const Shape&) { return c[0] > 0.7 && c[0] < 1.3; };
   return family;
 }
 
@@ -145,22 +154,15 @@ std::vector<EffectFamily> frequency_families(const Simulation& s) {
   std::vector<EffectFamily> families;
   const Telemetry& t = *s.telemetry;
   if (!t.has(Output::frequency)) return families;
-  families.push_back(ageing(
-      s, "f += a t", [](const ArrayXd& x, double length) -> ArrayXd { return x / length; }, false));
-  families.push_back(ageing(
-      s, "f += a (1 - exp(-t / t0))",
-      [](const ArrayXd& x, double t0) -> ArrayXd { return 1.0 - (-x / t0).exp(); }, true));
-  families.push_back(ageing(
-      s, "f += a ln(1 + t / t0)", [](const ArrayXd& x, double t0) -> ArrayXd { return (1.0 + x / t0).log(); },
-      true));
-  families.push_back(oscillator_ageing());
+  for (const bool of_clock : {false, true})
+    for (const Curve& curve : kCurves) families.push_back(ageing(s, curve, of_clock));
   if (moves(t.case_degc, 1.0)) {
     families.push_back(polynomial_order(1));
     families.push_back(polynomial_order(2));
     families.push_back(loop_lag(s));
   }
   if (t.has_board && moves(t.board_degc, 0.5))
-    for (const int order : {1, 2, 3}) families.push_back(oscillator_temperature(order));
+    for (const int order : {1, 2, 3, 5}) families.push_back(oscillator_temperature(order));
   if (moves(t.amplitude, 1e-3))
     families.push_back(square_of_input("duffing", "f += f s (A^2 - 1)", t.amplitude));
   if (t.has_supply && moves(t.supply_v, 1e-3 * std::abs(median(t.supply_v))))

@@ -132,6 +132,7 @@ ArrayXd late(const ArrayXd& x, double n) {
 // The nominal output without the thermometer's noise, which a delay would move against itself.
 ArrayXd smooth_nominal(const Simulation& s, Output output) {
   const ArrayXd amplitude = s.telemetry->amplitude;
+  if (output == Output::frequency) return s.smooth_f;
   if (output == Output::drive) return amplitude * s.model.drive_v.at(s.smooth_degc);
   if (output == Output::quadrature)
     return amplitude * s.model.quadrature_v.at(s.smooth_degc) + s.telemetry->trim_v.array();
@@ -165,13 +166,15 @@ EffectFamily time_shift(Output output) {
 std::vector<EffectFamily> rate_families(const Simulation& s) {
   std::vector<EffectFamily> families;
   const Telemetry& t = *s.telemetry;
+  for (const Output output : kOutputs) {
+    const bool moving = moves(t.case_degc, 1.0) ||
+                        (output != Output::frequency &&
+                         (moves(t.rate_in_dph, 1.0) || moves(t.trim_v, 1e-3) || moves(t.amplitude, 1e-3)));
+    if (t.has(output) && moving) families.push_back(time_shift(output));
+  }
   if (!t.has(Output::rate)) return families;
   add_commands(families, t);
   if (moves(t.rate_in_dph, 1.0)) add_turning(families);
-  for (const Output output : {Output::rate, Output::quadrature, Output::drive})
-    if (t.has(output) && (moves(t.case_degc, 1.0) || moves(t.rate_in_dph, 1.0) || moves(t.trim_v, 1e-3) ||
-                          moves(t.amplitude, 1e-3)))
-      families.push_back(time_shift(output));
   if (t.has_accel && moves(t.accel_g, 0.05)) add_attitude(families);
   return families;
 }

@@ -32,37 +32,55 @@ Trace in_rate(const ArrayXd& column) {
   return trace;
 }
 
-EffectFamily second_time_constant(const Simulation& s) {
+EffectFamily second_time_constant(const Simulation& s, bool beside) {
   EffectFamily family;
   family.effect = "thermal_second_time_constant";
-  family.form = "T += w (lag(T, tau2) - T)";
-  family.grid = geometric_grid(std::max(90.0, 4.0 * s.telemetry->step_s), 20000.0, kLagRatio);
+  family.form = beside ? "T += w (lag(case, tau2) - T)" : "T += w (lag(T, tau2) - T)";
+  const double shortest = beside ? 1.35 * s.model.time_constant_s : std::max(90.0, 4.0 * s.telemetry->step_s);
+  family.grid = geometric_grid(shortest, 20000.0, kLagRatio);
   family.spacing = {kLagRatio};
-  family.columns = [](const Simulation& at, const Shape& shape) {
-    const ArrayXd behind = lag(at.smooth_degc, at.telemetry->step_s, shape[0], at.smooth_degc[0]);
+  family.columns = [beside](const Simulation& at, const Shape& shape) {
+    const ArrayXd behind = beside ? case_behind(at, shape[0])
+                                  : lag(at.smooth_degc, at.telemetry->step_s, shape[0], at.smooth_degc[0]);
     return std::vector<Trace>{at.thermal(behind - at.smooth_degc)};
   };
   family.figures = [](const Simulation&, const Shape& c, const Shape& shape) {
     return std::vector<Figure>{{"second_time_constant", "s", shape[0]}, {"weight", "1", c[0]}};
   };
   // A pole in series has weight one; poles side by side share it.
-  family.possible = [](const Simulation&, const Shape& c, const Shape&) { return c[0] > 0.0 && c[0] < 1.5; };
+  family.possible = [beside](const Simulation&, const Shape& c, const Shape&) {
+    return c[0] > 0.0 && c[0] < (beside ? 1.0 : 1.5);
+  };
   return family;
 }
 
-EffectFamily gradient(const Simulation& s, bool towards_case) {
+EffectFamily gradient(const Simulation& s) {
   EffectFamily family;
   family.effect = "thermal_gradient_bias";
-  family.form = towards_case ? "rate += g (case - lag(case, tau_n))" : "rate += g (lag(case, tau_n) - T)";
+  family.form = "rate += g (case - lag(case, tau_n))";
   family.grid = geometric_grid(std::max(50.0, 4.0 * s.telemetry->step_s), 20000.0, kLagRatio);
   family.spacing = {kLagRatio};
-  family.columns = [towards_case](const Simulation& at, const Shape& shape) {
-    const ArrayXd node = case_behind(at, shape[0]);
-    const ArrayXd& degc = at.smooth_case_degc;
-    return std::vector<Trace>{in_rate(towards_case ? ArrayXd(degc - node) : ArrayXd(node - at.smooth_degc))};
+  family.columns = [](const Simulation& at, const Shape& shape) {
+    return std::vector<Trace>{in_rate(at.smooth_case_degc - case_behind(at, shape[0]))};
   };
   family.figures = [](const Simulation&, const Shape& c, const Shape& shape) {
     return std::vector<Figure>{{"gain", "deg/h per degC", c[0]}, {"node_time_constant", "s", shape[0]}};
+  };
+  return family;
+}
+
+// The outer node stands behind the case as well.
+EffectFamily gradient_of_two(const Simulation& s) {
+  EffectFamily family = gradient(s);
+  family.form = "rate += g (n - lag(n, tau_n)), n = lag(case, tau_1)";
+  family.grid.clear();
+  for (const double outer : {40.0, 120.0})
+    for (const auto& inner : geometric_grid(3.0 * outer, 20000.0, kLagRatio * kLagRatio))
+      family.grid.push_back({inner[0], outer});
+  family.spacing = {kLagRatio * kLagRatio, 3.0};
+  family.columns = [](const Simulation& at, const Shape& shape) {
+    const ArrayXd outer = case_behind(at, shape[1]);
+    return std::vector<Trace>{in_rate(outer - lag(outer, at.telemetry->step_s, shape[0], outer[0]))};
   };
   return family;
 }
@@ -81,10 +99,12 @@ EffectFamily hysteresis(std::vector<Shape> grid, bool shaped) {
       columns.push_back(in_rate(play(s.smooth_degc, radius(s, share)) - s.smooth_degc));
     return columns;
   };
+  // The operator's own swing; what of it is a function of T alone the bias model takes, which is why the
+  // columns are less T.
   family.figures = [radius](const Simulation& s, const Shape& c, const Shape& radii) {
-    double height = 0.0;
-    for (std::size_t i = 0; i < radii.size(); ++i) height += 2.0 * radius(s, radii[i]) * c[i];
-    return std::vector<Figure>{{"loop_height", "deg/h", std::abs(height)}};
+    ArrayXd sum = ArrayXd::Zero(s.smooth_degc.size());
+    for (std::size_t i = 0; i < radii.size(); ++i) sum += c[i] * play(s.smooth_degc, radius(s, radii[i]));
+    return std::vector<Figure>{{"loop_height", "deg/h", span(sum)}};
   };
   return family;
 }
@@ -97,7 +117,7 @@ EffectFamily exponential_hysteresis() {
   family.form = "rate += w h, h' = (T' - |T'| h) / L";
   family.grid = geometric_grid(0.05, 1.6, kRadiusRatio);
   family.spacing = {kRadiusRatio};
-  family.columns = [](const Simulation& s, const Shape& shape) {
+  const auto memory = [](const Simulation& s, const Shape& shape) {
     const double length = 0.5 * shape[0] * span(s.smooth_degc);
     const ArrayXd& t = s.smooth_degc;
     ArrayXd h = ArrayXd::Zero(t.size());
@@ -105,10 +125,13 @@ EffectFamily exponential_hysteresis() {
       const double step = (t[i] - t[i - 1]) / length;
       h[i] = (h[i - 1] + step) / (1.0 + std::abs(step));
     }
-    return std::vector<Trace>{in_rate(h)};
+    return h;
   };
-  family.figures = [](const Simulation&, const Shape& c, const Shape&) {
-    return std::vector<Figure>{{"loop_height", "deg/h", 2.0 * std::abs(c[0])}};
+  family.columns = [memory](const Simulation& s, const Shape& shape) {
+    return std::vector<Trace>{in_rate(memory(s, shape))};
+  };
+  family.figures = [memory](const Simulation& s, const Shape& c, const Shape& shape) {
+    return std::vector<Figure>{{"loop_height", "deg/h", std::abs(c[0]) * span(memory(s, shape))}};
   };
   return family;
 }
@@ -151,13 +174,15 @@ std::vector<EffectFamily> thermal_families(const Simulation& s) {
   if (frequency) families.push_back(self_heating(s, false));
   if (frequency && !s.telemetry->powered.all()) families.push_back(self_heating(s, true));
   if (!moves(s.telemetry->case_degc, kLeastSwing_degc)) return families;
-  if (frequency) families.push_back(second_time_constant(s));
+  if (frequency)
+    for (const bool beside : {false, true}) families.push_back(second_time_constant(s, beside));
   if (!s.telemetry->has(Output::rate)) return families;
-  families.push_back(gradient(s, true));
-  families.push_back(gradient(s, false));
+  families.push_back(gradient(s));
+  families.push_back(gradient_of_two(s));
   families.push_back(hysteresis(geometric_grid(0.02, 0.9, kRadiusRatio), true));
   families.push_back(hysteresis({{0.04, 0.2}, {0.08, 0.35}, {0.15, 0.5}, {0.3, 0.7}}, true));
   families.push_back(hysteresis({{0.03, 0.1, 0.3, 0.6}}, false));
+  families.push_back(hysteresis({{0.05, 0.15, 0.3, 0.5, 0.75}}, false));
   families.push_back(exponential_hysteresis());
   return families;
 }

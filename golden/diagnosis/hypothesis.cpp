@@ -19,8 +19,9 @@ Trace data_trace(const Telemetry& telemetry, const Trace& nominal) {
   return trace;
 }
 
-// Orthonormal basis of the columns that are not zero.
-MatrixXd basis(const MatrixXd& columns) {
+}  // namespace
+
+MatrixXd orthonormal(const MatrixXd& columns) {
   std::vector<Index> kept;
   for (Index j = 0; j < columns.cols(); ++j)
     if (columns.col(j).squaredNorm() > 0.0) kept.push_back(j);
@@ -31,8 +32,6 @@ MatrixXd basis(const MatrixXd& columns) {
   qr.setThreshold(1e-9);
   return qr.householderQ() * MatrixXd::Identity(scaled.rows(), qr.rank());
 }
-
-}  // namespace
 
 Reduced joined(const std::vector<const Reduced*>& parts) {
   Reduced all;
@@ -66,6 +65,7 @@ Hypotheses::Hypotheses(const Telemetry& telemetry, const RowSpace& space, Simula
 const Reduced& Hypotheses::columns(const Member& member) {
   const auto found = columns_.find(member);
   if (found != columns_.end()) return found->second;
+  check_();
   const auto traces = families_[member.family].columns(simulation_, member.shape);
   std::vector<const Trace*> list;
   for (const auto& trace : traces) list.push_back(&trace);
@@ -87,7 +87,7 @@ VectorXd Hypotheses::prior_precision(Index columns) const {
 }
 
 MatrixXd Hypotheses::noise_basis(Output output, const std::vector<Member>& members) {
-  return basis(design(members)[place(output)]);
+  return orthonormal(design(members)[place(output)]);
 }
 
 const NoiseShape& Hypotheses::own_noise(Output output, const std::vector<Member>& members) {
@@ -98,6 +98,7 @@ const NoiseShape& Hypotheses::own_noise(Output output, const std::vector<Member>
   const auto key = std::pair(c, acting);
   const auto found = noises_.find(key);
   if (found != noises_.end()) return found->second;
+  check_();
   const auto shape =
       fit_noise_shape(noise_basis(output, acting), data_[c].col(0), space_.blocks(output), expected_[c]);
   return noises_.emplace(key, shape).first->second;
@@ -111,6 +112,7 @@ HypothesisFit Hypotheses::fit(const std::vector<Member>& members) {
 }
 
 HypothesisFit Hypotheses::fit(const std::vector<Member>& members, const Noise& noise) {
+  check_();
   HypothesisFit result;
   result.noise = noise;
   const Reduced x = design(members);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 
@@ -35,6 +36,8 @@ class Hypotheses {
  public:
   Hypotheses(const Telemetry& telemetry, const RowSpace& space, Simulation simulation,
              std::vector<EffectFamily> families);
+  /// Called before every computation of any length; may throw.
+  void check_with(std::function<void()> check) { check_ = std::move(check); }
 
   const Simulation& simulation() const { return simulation_; }
   const RowSpace& space() const { return space_; }
@@ -66,9 +69,13 @@ class Hypotheses {
   std::vector<BaselineColumn> baseline_;
   Reduced baseline_rows_, data_;
   Noise expected_;
+  std::function<void()> check_ = [] {};
   std::map<Member, Reduced> columns_;
   std::map<std::pair<std::size_t, std::vector<Member>>, NoiseShape> noises_;
 };
+
+/// Orthonormal basis of the columns that are not zero.
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);
 
 /// Columns beside each other.
 Reduced joined(const std::vector<const Reduced*>& parts);

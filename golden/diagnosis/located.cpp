@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "golden/diagnosis/located.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -33,25 +34,84 @@ std::vector<bool> holding(const std::vector<double>& energy, double share) {
   return kept;
 }
 
+// Squared deviations of the misfit in every window, and its rows in units of the output.
 struct Misfit {
-  VectorXd values;  // a row of the output each
-  double energy = 0.0;
+  VectorXd values;
+  std::vector<double> energy;
+
+  double whole() const { return std::accumulate(energy.begin(), energy.end(), 0.0); }
 };
 
-Misfit misfit_of(const TelemetryDiagnosis& d, Output output) {
+class Windows {
+ public:
+  explicit Windows(const TelemetryDiagnosis& d)
+      : step_s_(d.telemetry->step_s),
+        block_s_(step_s_ * static_cast<double>(d.hypotheses->space().block_rows())),
+        count_(static_cast<std::size_t>(static_cast<double>(d.telemetry->rows()) * step_s_ / kWindow_s) + 1) {
+  }
+
+  std::size_t count() const { return count_; }
+  std::size_t of_row(Index row) const { return at((static_cast<double>(row) + 0.5) * step_s_); }
+  std::size_t of_block(Index block) const { return at((static_cast<double>(block) + 0.5) * block_s_); }
+  Index first_row(std::size_t window) const {
+    return static_cast<Index>(std::ceil(static_cast<double>(window) * kWindow_s / step_s_));
+  }
+
+ private:
+  std::size_t at(double time_s) const {
+    return std::min(count_ - 1, static_cast<std::size_t>(time_s / kWindow_s));
+  }
+  double step_s_, block_s_;
+  std::size_t count_;
+};
+
+// A column of one output less what the baseline takes of it.
+VectorXd beside_baseline(Hypotheses& h, Output output, const VectorXd& column) {
   const std::size_t c = place(output);
+  Reduced alone;
+  for (const Output each : kOutputs) alone[place(each)] = Eigen::MatrixXd::Zero(h.space().rows(each), 1);
+  alone[c].col(0) = column;
+  const Eigen::MatrixXd own = whiten(h.space(), h.expected(), h.baseline_rows());
+  const VectorXd white = whiten(h.space(), h.expected(), alone).col(0);
+  return column - h.baseline_rows()[c] * own.colPivHouseholderQr().solve(white);
+}
+
+// What effects and free functions take off beside the baseline, colour beyond the stated one, and slips.
+Misfit misfit_of(const TelemetryDiagnosis& d, const Windows& windows, Output output) {
+  const std::size_t c = place(output);
+  Hypotheses& h = *d.hypotheses;
+  const auto& blocks = h.space().blocks(output);
+  const auto noise = coloured_noise(h.expected()[c], h.space().block_count());
+  const Reduced with = h.fit(d.members, h.expected()).residual;
   Misfit misfit;
-  misfit.values = d.baseline.residual[c].col(0) - d.final.residual[c].col(0);
+  misfit.values = h.fit({}, h.expected()).residual[c].col(0) - with[c].col(0);
   for (const auto& remainder : d.remainders)
     if (remainder.output == output && remainder.fitted.size() == misfit.values.size())
-      misfit.values += remainder.fitted;
-  misfit.energy = misfit.values.squaredNorm() / d.hypotheses->expected()[c].white;
+      misfit.values += beside_baseline(h, output, remainder.fitted);
+  misfit.energy.assign(windows.count(), 0.0);
+  const bool coloured =
+      std::ranges::any_of(d.colours, [&](const Colour& colour) { return colour.output == output; });
+  const VectorXd white = whiten(misfit.values, blocks, noise);
+  const VectorXd left = whiten(with[c], blocks, noise);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    misfit.energy[windows.of_block(blocks[i])] +=
+        white[k] * white[k] + (coloured ? left[k] * left[k] - 1.0 : 0.0);
+  }
+  for (double& energy : misfit.energy) energy = std::max(energy, 0.0);
+  if (coloured) misfit.values += with[c].col(0);
+  if (output == Output::frequency) {
+    // A pulse of one turn within one row.
+    const double row = h.expected()[c].white * static_cast<double>(h.space().block_rows());
+    const double pulse = std::pow(1.0 / d.telemetry->step_s, 2) / std::max(row, 1e-300);
+    for (const Index slip : d.events.slips) misfit.energy[windows.of_row(slip)] += pulse;
+  }
   return misfit;
 }
 
-// Inputs of a window: the mean of x over its rows.
-void add_region(Located& entry, const TelemetryDiagnosis& d, const std::vector<double>& energy,
-                const std::vector<bool>& kept, Index rows_a_window) {
+// Range of the case over the windows that hold the misfit, and which way it went there.
+void add_region(Located& entry, const TelemetryDiagnosis& d, const Misfit& misfit,
+                const std::vector<bool>& kept, const Windows& windows) {
   const Simulation& s = d.hypotheses->simulation();
   entry.variable = "case_temp_degc";
   entry.low = 1e300;
@@ -59,14 +119,14 @@ void add_region(Located& entry, const TelemetryDiagnosis& d, const std::vector<d
   double up = 0.0, whole = 0.0;
   for (std::size_t w = 0; w < kept.size(); ++w) {
     if (!kept[w]) continue;
-    const Index begin = static_cast<Index>(w) * rows_a_window;
-    const Index count = std::min(rows_a_window, s.smooth_case_degc.size() - begin);
+    const Index begin = windows.first_row(w);
+    const Index count = std::min(windows.first_row(w + 1), s.smooth_case_degc.size()) - begin;
     if (count <= 0) continue;
     const auto degc = s.smooth_case_degc.segment(begin, count);
     entry.low = std::min(entry.low, degc.minCoeff());
     entry.high = std::max(entry.high, degc.maxCoeff());
-    whole += energy[w];
-    if (degc[count - 1] > degc[0]) up += energy[w];
+    whole += misfit.energy[w];
+    if (degc[count - 1] > degc[0]) up += misfit.energy[w];
   }
   entry.when = up > kOneWay * whole ? "heating" : up < (1.0 - kOneWay) * whole ? "cooling" : "always";
 }
@@ -93,45 +153,59 @@ void add_band(Located& entry, const VectorXd& values, double block_s) {
 
 }  // namespace
 
+namespace {
+
+Located slow(const TelemetryDiagnosis& d, const Windows& windows, Output output, const Misfit& misfit) {
+  Located entry;
+  entry.output = output;
+  entry.share = misfit.whole();
+  const auto kept = holding(misfit.energy, kMost);
+  for (std::size_t w = 0; w < kept.size(); ++w) {
+    if (!kept[w]) continue;
+    const double begin = kWindow_s * static_cast<double>(w);
+    if (!entry.time_s.empty() && entry.time_s.back().second == begin)
+      entry.time_s.back().second = begin + kWindow_s;
+    else
+      entry.time_s.emplace_back(begin, begin + kWindow_s);
+  }
+  add_region(entry, d, misfit, kept, windows);
+  add_band(entry, misfit.values,
+           d.telemetry->step_s * static_cast<double>(d.hypotheses->space().block_rows()));
+  return entry;
+}
+
+// A line is everywhere in time and in one band.
+Located fast(const TelemetryDiagnosis& d, const Line& line) {
+  const auto& degc = d.hypotheses->simulation().smooth_case_degc;
+  Located entry;
+  entry.output = line.output;
+  entry.share = std::pow(line.amplitude / line.amplitude_deviation, 2);
+  entry.time_s = {{0.0, d.telemetry->step_s * static_cast<double>(d.telemetry->rows())}};
+  entry.variable = "case_temp_degc";
+  entry.low = degc.minCoeff();
+  entry.high = degc.maxCoeff();
+  entry.when = "always";
+  entry.low_hz = line.low_hz;
+  entry.high_hz = line.high_hz;
+  return entry;
+}
+
+}  // namespace
+
 std::vector<Located> locate(const TelemetryDiagnosis& d) {
   std::vector<Located> list;
-  std::array<Misfit, kOutputs.size()> misfits;
+  const Windows windows(d);
   double whole = 0.0;
-  const RowSpace& space = d.hypotheses->space();
   for (const Output output : kOutputs) {
-    if (space.rows(output) < 16) continue;
-    misfits[place(output)] = misfit_of(d, output);
-    whole += misfits[place(output)].energy;
+    if (d.hypotheses->space().rows(output) < 16) continue;
+    const Misfit misfit = misfit_of(d, windows, output);
+    if (misfit.whole() > 0.0) list.push_back(slow(d, windows, output, misfit));
   }
-  if (whole <= 0.0) return list;
-  const double step_s = d.hypotheses->simulation().telemetry->step_s;
-  const double block_s = step_s * static_cast<double>(space.block_rows());
-  for (const Output output : kOutputs) {
-    const Misfit& misfit = misfits[place(output)];
-    if (misfit.energy < kLeastShare * whole) continue;
-    Located entry;
-    entry.output = output;
-    entry.share = misfit.energy / whole;
-    const auto blocks_a_window = std::max<Index>(1, std::lround(kWindow_s / block_s));
-    std::vector<double> energy(static_cast<std::size_t>(space.block_count() / blocks_a_window + 1), 0.0);
-    const auto& blocks = space.blocks(output);
-    for (std::size_t i = 0; i < blocks.size(); ++i)
-      energy[static_cast<std::size_t>(blocks[i] / blocks_a_window)] +=
-          misfit.values[static_cast<Index>(i)] * misfit.values[static_cast<Index>(i)];
-    const auto kept = holding(energy, kMost);
-    const double window_s = block_s * static_cast<double>(blocks_a_window);
-    for (std::size_t w = 0; w < kept.size(); ++w) {
-      if (!kept[w]) continue;
-      const double begin = window_s * static_cast<double>(w);
-      if (!entry.time_s.empty() && entry.time_s.back().second == begin)
-        entry.time_s.back().second = begin + window_s;
-      else
-        entry.time_s.emplace_back(begin, begin + window_s);
-    }
-    add_region(entry, d, energy, kept, blocks_a_window * space.block_rows());
-    add_band(entry, misfit.values, block_s);
-    list.push_back(std::move(entry));
-  }
+  for (const auto& line : d.lines) list.push_back(fast(d, line));
+  for (const auto& entry : list) whole += entry.share;
+  std::erase_if(list, [&](const Located& entry) { return entry.share < kLeastShare * whole; });
+  for (auto& entry : list) entry.share /= whole;
+  std::ranges::stable_sort(list, [](const Located& a, const Located& b) { return a.share > b.share; });
   return list;
 }
 

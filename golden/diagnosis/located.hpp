@@ -19,8 +19,9 @@ struct Located {
   double low_hz = 0.0, high_hz = 0.0;  ///< band that holds nine tenths of it
 };
 
-/// The misfit is what effects or free functions take off beside the baseline; an output with less than a
-/// hundredth of the whole is left out. Stretches are made of windows of 300 s.
+/// The misfit is what effects, free functions, colour beyond the stated one, lines and slips take off beside
+/// the baseline, in deviations of the expected noise (squares of the whitened rows); less than a hundredth of
+/// the whole is left out. Stretches are made of windows of 300 s from the first row. Largest share first.
 std::vector<Located> locate(const TelemetryDiagnosis& diagnosis);
 
 }  // namespace hemi::diagnosis

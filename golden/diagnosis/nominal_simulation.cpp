@@ -88,19 +88,46 @@ void fill_rate(Simulation& s) {
 
 }  // namespace
 
-Simulation simulate(const Telemetry& telemetry, const NominalModel& model, double start_degc) {
+std::vector<Restart> restarts(const Telemetry& telemetry, double tau_s) {
+  std::vector<Restart> list;
+  const auto& powered = telemetry.powered;
+  Eigen::Index begin = 0;
+  for (Eigen::Index i = 0; i < powered.size(); ++i) {
+    if (!powered[i]) continue;
+    const Eigen::Index missing = i - begin;
+    begin = i + 1;
+    if (missing == 0 || missing == i) continue;
+    Restart restart{i, missing, ArrayXd::Zero(powered.size())};
+    // Up within the stretch, so that nothing jumps where rows go on.
+    restart.fading.segment(i - missing, missing) =
+        ArrayXd::LinSpaced(missing, 0.0, 1.0 - 1.0 / static_cast<double>(missing)).square();
+    const Eigen::Index rows = powered.size() - i;
+    restart.fading.tail(rows) =
+        (-telemetry.step_s / tau_s * ArrayXd::LinSpaced(rows, 0.0, static_cast<double>(rows - 1))).exp();
+    list.push_back(std::move(restart));
+  }
+  return list;
+}
+
+Simulation simulate(const Telemetry& telemetry, const NominalModel& model, const Unsettled& unsettled) {
   Simulation s;
   s.telemetry = &telemetry;
   s.model = model;
-  s.start_degc = start_degc;
+  s.unsettled = unsettled;
   const Eigen::Index n = telemetry.rows();
   s.time_s = ArrayXd::LinSpaced(n, 0.0, telemetry.step_s * static_cast<double>(n - 1));
   const ArrayXd case_degc = telemetry.case_degc;
-  s.temperature_degc = lag(case_degc, telemetry.step_s, model.time_constant_s, case_degc[0] + start_degc);
+  s.temperature_degc =
+      lag(case_degc, telemetry.step_s, model.time_constant_s, case_degc[0] + unsettled.start_degc);
   s.board_degc = smoothed(telemetry.board_degc, telemetry.step_s, kSmoothing_s);
   s.smooth_case_degc = smoothed(telemetry.case_degc, telemetry.step_s, kSmoothing_s);
-  s.smooth_degc =
-      lag(s.smooth_case_degc, telemetry.step_s, model.time_constant_s, s.smooth_case_degc[0] + start_degc);
+  s.smooth_degc = lag(s.smooth_case_degc, telemetry.step_s, model.time_constant_s,
+                      s.smooth_case_degc[0] + unsettled.start_degc);
+  const auto again = restarts(telemetry, model.time_constant_s);
+  for (std::size_t k = 0; k < std::min(again.size(), unsettled.restart_degc.size()); ++k) {
+    s.temperature_degc += unsettled.restart_degc[k] * again[k].fading;
+    s.smooth_degc += unsettled.restart_degc[k] * again[k].fading;
+  }
   s.smooth_f = model.frequency_hz.at(s.smooth_degc) - model.bias_reference_hz;
   const ArrayXd frequency = model.frequency_hz.at(s.temperature_degc);
   s.frequency_per_degc = model.frequency_hz.slope(s.temperature_degc);
@@ -133,8 +160,9 @@ Trace Simulation::thermal(const ArrayXd& warmer) const {
 
 namespace {
 
-// Below this the bias model's terms but the constant one are noise of the thermometer.
+// Below this all but the linear terms are noise of the thermometer.
 constexpr double kLeastSwing_degc = 1.0;
+constexpr double kDecay_s = 2000.0;
 constexpr const char* kBiasNames[kBiasTermCount] = {"1",    "f",    "f^2",  "f^3",    "df",
                                                     "df^2", "df^3", "f*df", "f^2*df", "f*df^2"};
 
@@ -147,8 +175,7 @@ ArrayXd power(const ArrayXd& x, std::size_t exponent) {
 void add_polynomial(std::vector<BaselineColumn>& columns, const Simulation& s, Output output,
                     const Polynomial& polynomial, const char* name) {
   if (!s.telemetry->has(output)) return;
-  // At one temperature nothing but the constant can be told.
-  const std::size_t terms = span(s.smooth_case_degc) < kLeastSwing_degc ? 1 : polynomial.coefficients.size();
+  const std::size_t terms = span(s.smooth_case_degc) < kLeastSwing_degc ? 2 : polynomial.coefficients.size();
   for (std::size_t i = 0; i < std::min(terms, polynomial.coefficients.size()); ++i) {
     ArrayXd column = power(s.smooth_degc - polynomial.reference, i);
     if (output != Output::frequency) column *= s.telemetry->amplitude.array();
@@ -164,17 +191,52 @@ void add_start(std::vector<BaselineColumn>& columns, const Simulation& s) {
       {.name = "start", .trace = s.thermal((-s.time_s / s.model.time_constant_s).exp()), .nuisance = true});
 }
 
+// How far x strays on average from the straight line over stretches of this many rows, rms over the
+// recording.
+double straying(const ArrayXd& x, Eigen::Index rows) {
+  double squares = 0.0;
+  Eigen::Index count = 0;
+  const Eigen::Index step = std::max<Eigen::Index>(1, rows / 4);
+  for (Eigen::Index begin = 0; begin + rows < x.size(); begin += step, ++count)
+    squares += std::pow(x.segment(begin, rows + 1).mean() - 0.5 * (x[begin] + x[begin + rows]), 2);
+  return count == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(count));
+}
+
+// The case's way through a stretch without rows is not known, nor then where the resonator is after it.
+void add_restarts(std::vector<BaselineColumn>& columns, const Simulation& s) {
+  const double tau = s.model.time_constant_s;
+  for (const Restart& restart : restarts(*s.telemetry, tau)) {
+    const double share = -std::expm1(-s.telemetry->step_s * static_cast<double>(restart.missing) / tau);
+    columns.push_back({.name = "restart",
+                       .trace = s.thermal(restart.fading),
+                       .prior_sd = std::max(1e-4, share * straying(s.smooth_case_degc, restart.missing)),
+                       .nuisance = true});
+  }
+}
+
 void add_thermal(std::vector<BaselineColumn>& columns, const Simulation& s) {
   const double tau = s.model.time_constant_s;
+  const ArrayXd settled =
+      lag(s.smooth_case_degc, s.telemetry->step_s, tau, s.smooth_case_degc[0] + s.unsettled.start_degc);
   // A thousandth of tau: the difference quotient is exact to 1e-3 of itself, and Gauss-Newton repeats.
-  const ArrayXd later =
-      lag(s.smooth_case_degc, s.telemetry->step_s, tau * 1.001, s.smooth_case_degc[0] + s.start_degc);
-  columns.push_back({.name = "thermal.time_constant_s", .trace = s.thermal((later - s.smooth_degc) / 0.001)});
+  const ArrayXd later = lag(s.smooth_case_degc, s.telemetry->step_s, tau * 1.001,
+                            s.smooth_case_degc[0] + s.unsettled.start_degc);
+  columns.push_back({.name = "thermal.time_constant_s", .trace = s.thermal((later - settled) / 0.001)});
   columns.push_back(
       {.name = "lag",
        .trace = s.thermal(-s.telemetry->step_s * slope_in_time(s.smooth_degc, s.telemetry->step_s)),
        .prior_sd = 0.5,
        .nuisance = true});
+}
+
+// A resonator whose frequency moves keeps its action, energy over frequency: at constant amplitude the drive
+// makes good 1/tau_d + f'/(2 f), tau_d the amplitude's time constant, of which the model says nothing.
+// Source: Landau and Lifshitz, Mechanics, section 49.
+void add_decay(std::vector<BaselineColumn>& columns, const Simulation& s) {
+  const ArrayXd growth = 0.5 * slope_in_time(s.smooth_f, s.telemetry->step_s) / s.model.bias_reference_hz;
+  BaselineColumn entry{.name = "decay", .trace = {}, .prior_sd = kDecay_s, .nuisance = true};
+  entry.trace[Output::drive] = s.telemetry->amplitude.array() * s.model.drive_v.at(s.smooth_degc) * growth;
+  columns.push_back(std::move(entry));
 }
 
 }  // namespace
@@ -186,10 +248,11 @@ std::vector<BaselineColumn> baseline_columns(const Simulation& s) {
   // A resonator that has not settled shows its start at any temperature, its time constant at none.
   if (s.telemetry->has_case && s.model.time_constant_s > 0.0) add_start(columns, s);
   if (s.telemetry->has_case && swing > kLeastSwing_degc) add_thermal(columns, s);
+  if (s.telemetry->has_case && s.model.time_constant_s > 0.0) add_restarts(columns, s);
   if (s.telemetry->has(Output::rate)) {
     const auto terms = bias_terms(s.smooth_f, slope_in_time(s.smooth_f, s.telemetry->step_s));
     for (std::size_t i = 0; i < kBiasTermCount; ++i) {
-      if (i > 0 && swing < kLeastSwing_degc) break;
+      if (swing < kLeastSwing_degc && i != 0 && i != 1 && i != 4) continue;  // 1, f, df
       BaselineColumn entry{.name = fmt::format("bias.terms_dph.{}", kBiasNames[i]), .trace = {}};
       entry.trace[Output::rate] = terms[i];
       columns.push_back(std::move(entry));
@@ -200,6 +263,7 @@ std::vector<BaselineColumn> baseline_columns(const Simulation& s) {
       columns.push_back(std::move(scale));
   }
   add_polynomial(columns, s, Output::drive, s.model.drive_v, "drive.coefficients_v");
+  if (s.telemetry->has(Output::drive) && swing > kLeastSwing_degc) add_decay(columns, s);
   add_polynomial(columns, s, Output::quadrature, s.model.quadrature_v, "quadrature.coefficients_v");
   return columns;
 }
@@ -230,10 +294,15 @@ double parameter(const NominalModel& model, const std::string& name) {
 }
 
 void move_parameters(const std::vector<BaselineColumn>& columns, const Eigen::VectorXd& steps,
-                     NominalModel& model, double& start_degc) {
+                     NominalModel& model, Unsettled& unsettled) {
+  std::size_t restart = 0;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const double step = steps[static_cast<Eigen::Index>(i)];
-    if (columns[i].name == "start") start_degc += step;
+    if (columns[i].name == "start") unsettled.start_degc += step;
+    if (columns[i].name == "restart") {
+      if (unsettled.restart_degc.size() <= restart) unsettled.restart_degc.push_back(0.0);
+      unsettled.restart_degc[restart++] += step;
+    }
     double* value = place_of(model, columns[i].name);
     if (value == nullptr) continue;
     // The time constant's column is per unit of its logarithm; half of that at most in one step.

@@ -33,6 +33,19 @@ Eigen::ArrayXd smoothed(const Eigen::ArrayXd& x, double step_s, double half_widt
 /// The ten terms of the bias model over f (already less its reference) and df, in their order.
 std::array<Eigen::ArrayXd, kBiasTermCount> bias_terms(const Eigen::ArrayXd& f, const Eigen::ArrayXd& df);
 
+/// Where the resonator is when rows begin, which the case does not tell.
+struct Unsettled {
+  double start_degc = 0.0;           ///< T less what follows from the case, at the first row
+  std::vector<double> restart_degc;  ///< at the first row after each stretch without rows; missing: zero
+};
+
+/// A stretch without rows inside a recording.
+struct Restart {
+  Eigen::Index row = 0, missing = 0;  ///< the first row afterwards; length of the stretch
+  Eigen::ArrayXd fading;              ///< exp(-(t - t_row) / tau) of T less what follows from the case
+};
+std::vector<Restart> restarts(const Telemetry& telemetry, double tau_s);
+
 /// The nominal simulation of the recording format along one recording, and its derivatives.
 ///
 ///     T[0] = case[0] + start, T behind the case by one time constant; frequency = p(T);
@@ -41,8 +54,8 @@ inline constexpr double kSmoothing_s = 150.0;
 struct Simulation {
   const Telemetry* telemetry = nullptr;
   NominalModel model;
-  double start_degc = 0.0;  ///< T[0] less case[0]
-  Eigen::ArrayXd time_s;    ///< from the first row
+  Unsettled unsettled;
+  Eigen::ArrayXd time_s;  ///< from the first row
   Eigen::ArrayXd temperature_degc;
   /// Thermometers without their noise and steps, smoothed over kSmoothing_s: what an effect makes of T must
   /// not carry the noise that the nominal simulation has made of it.
@@ -57,14 +70,15 @@ struct Simulation {
   /// Change of all outputs when the true frequency is higher by `higher`.
   Trace frequency(const Eigen::ArrayXd& higher) const;
 };
-Simulation simulate(const Telemetry& telemetry, const NominalModel& model, double start_degc);
+Simulation simulate(const Telemetry& telemetry, const NominalModel& model, const Unsettled& unsettled = {});
 
 /// A parameter of the nominal model and what a unit of it changes.
 struct BaselineColumn {
   std::string name;  ///< path in the model file, such as frequency.coefficients_hz[1]
   Trace trace;
   double prior_sd = 0.0;  ///< 0: free; else a nuisance that is known to about this much
-  bool nuisance = false;  ///< no parameter of the model: start temperature, lag below one sample
+  bool nuisance = false;  ///< no parameter of the model: start temperature, again after a stretch
+                          ///< without rows, lag below one sample
 };
 /// Free parameters: all of the model's, all ten terms of its bias.
 std::vector<BaselineColumn> baseline_columns(const Simulation& simulation);
@@ -72,8 +86,8 @@ std::vector<BaselineColumn> baseline_columns(const Simulation& simulation);
 /// Value of the parameter of that name; zero for a nuisance.
 double parameter(const NominalModel& model, const std::string& name);
 
-/// The model with parameters moved by `steps` (order of baseline_columns); start_degc as well.
+/// The model with parameters moved by `steps` (order of baseline_columns); where it begins as well.
 void move_parameters(const std::vector<BaselineColumn>& columns, const Eigen::VectorXd& steps,
-                     NominalModel& model, double& start_degc);
+                     NominalModel& model, Unsettled& unsettled);
 
 }  // namespace hemi::diagnosis

@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
+
+#include "golden/diagnosis/form_error.hpp"
 
 namespace hemi::diagnosis {
 namespace {
@@ -18,10 +21,8 @@ using Eigen::VectorXd;
 using Members = std::vector<Member>;
 
 // In units of the score, twice a log likelihood.
-constexpr double kNameMargin = 10.0;  // to the nearest rival
-constexpr double kWorth = 8.0;        // beyond the price, to doing without
-constexpr double kTemper = 2.0;       // forms are not exact: differences count half
-constexpr double kStructure = 40.0;   // a free function of an input
+constexpr double kTemper = 2.0;      // forms are not exact: differences count half
+constexpr double kStructure = 40.0;  // a free function of an input
 constexpr double kStructureInTime = 150.0;
 constexpr double kColour = 25.0;  // colour of the rate that the model does not state
 constexpr double kRecalibrate_p = 1e-6;
@@ -36,13 +37,13 @@ struct Around {
   std::shared_ptr<Hypotheses> hypotheses;
   SearchResult found;
   NominalModel model;
-  double start_degc = 0.0;
+  Unsettled unsettled;
 };
 
 class Diagnosis {
  public:
   Diagnosis(const Telemetry& telemetry, const NominalModel& model, const TelemetryOptions& options)
-      : events_(find_events(telemetry, simulate(telemetry, model, 0.0))),
+      : events_(find_events(telemetry, simulate(telemetry, model))),
         cleaned_(std::make_shared<const Telemetry>(without_events(telemetry, events_))),
         telemetry_(*cleaned_),
         given_(model),
@@ -52,13 +53,15 @@ class Diagnosis {
   TelemetryDiagnosis run();
 
  private:
-  std::shared_ptr<Hypotheses> around(const NominalModel& model, double start_degc, bool effects) {
-    Simulation s = simulate(telemetry_, model, start_degc);
+  std::shared_ptr<Hypotheses> around(const NominalModel& model, const Unsettled& unsettled, bool effects) {
+    Simulation s = simulate(telemetry_, model, unsettled);
     auto families = effects ? effect_families(s) : std::vector<EffectFamily>{};
-    return std::make_shared<Hypotheses>(telemetry_, space_, std::move(s), std::move(families));
+    auto h = std::make_shared<Hypotheses>(telemetry_, space_, std::move(s), std::move(families));
+    h->check_with(options_.check);
+    return h;
   }
-  void relinearise(NominalModel& model, double& start_degc, const Members& members, int times);
-  Around search_from(NominalModel model, double start_degc);
+  void relinearise(NominalModel& model, Unsettled& unsettled, const Members& members, int times);
+  Around search_from(NominalModel model, Unsettled unsettled);
   void explain(TelemetryDiagnosis& result, const SearchResult& found);
   void compare_parameters(TelemetryDiagnosis& result);
   double remaining_share(const TelemetryDiagnosis& result, Output output) const;
@@ -74,23 +77,23 @@ class Diagnosis {
   RowSpace space_;
 };
 
-void Diagnosis::relinearise(NominalModel& model, double& start_degc, const Members& members, int times) {
+void Diagnosis::relinearise(NominalModel& model, Unsettled& unsettled, const Members& members, int times) {
   for (int i = 0; i < times; ++i) {
-    const auto h = around(model, start_degc, !members.empty());
+    const auto h = around(model, unsettled, !members.empty());
     const auto fit = members.empty() ? h->fit(members, h->expected()) : h->fit(members);
     move_parameters(h->baseline(), fit.coefficients.head(static_cast<Index>(h->baseline().size())), model,
-                    start_degc);
+                    unsettled);
   }
 }
 
-Around Diagnosis::search_from(NominalModel model, double start_degc) {
-  Around result{nullptr, {}, std::move(model), start_degc};
+Around Diagnosis::search_from(NominalModel model, Unsettled unsettled) {
+  Around result{nullptr, {}, std::move(model), std::move(unsettled)};
   for (int round = 0; round < kRounds; ++round) {
-    result.hypotheses = around(result.model, result.start_degc, true);
+    result.hypotheses = around(result.model, result.unsettled, true);
     result.found = EffectSearch(*result.hypotheses).run();
     const double tau = result.model.time_constant_s;
     if (round + 1 == kRounds || result.found.best.members.empty()) break;
-    relinearise(result.model, result.start_degc, result.found.best.members, 2);
+    relinearise(result.model, result.unsettled, result.found.best.members, 2);
     // Half a percent of tau: the second order of the step is 1e-5 of the transient.
     if (std::abs(std::log(result.model.time_constant_s / tau)) < 0.005) break;
   }
@@ -132,9 +135,11 @@ void Diagnosis::explain(TelemetryDiagnosis& result, const SearchResult& found) {
       return gain.held_out_white.low > 0.0 &&
              h.columns(result.members[i])[place(gain.output)].squaredNorm() > 0.0;
     });
-    if (entry.worth < kWorth)
-      entry.doubt = "too little is gained by it";
-    else if (!entry.near.empty())
+    if (result.members.size() > 1 && gain_beside_forms(h, result.members, result.final, i) <
+                                         kWorth + EffectSearch(h).penalty(result.members[i])) {
+      entry.doubt = "the others' equations may be inexact by as much";
+      entry.near.clear();
+    } else if (!entry.near.empty())
       entry.doubt = "other effects explain the recording as well";
     else if (!better)
       entry.doubt = "blocks left out do not become better";
@@ -199,7 +204,10 @@ double Diagnosis::remaining_share(const TelemetryDiagnosis& result, Output outpu
 void Diagnosis::look_at_remainder(TelemetryDiagnosis& result) {
   result.remainders = remainders(*result.hypotheses, result.members, kStructure);
   for (auto& remainder : result.remainders) remainder.share = remaining_share(result, remainder.output);
-  const Colour colour = colour_of(*result.hypotheses, result.members, Output::rate);
+  std::vector<std::size_t> all(result.members.size());
+  std::iota(all.begin(), all.end(), 0U);
+  const Reduced forms = form_directions(*result.hypotheses, result.members, result.final, all);
+  const Colour colour = colour_of(*result.hypotheses, result.members, forms, Output::rate);
   if (colour.evidence > kColour) result.colours.push_back(colour);
 }
 
@@ -235,6 +243,8 @@ void Diagnosis::name_events(TelemetryDiagnosis& result) {
     for (const auto* group : {&result.named, &result.ambiguous})
       for (const auto& entry : *group)
         if (entry.trace[output].size() > 0) residual -= entry.trace[output];
+    for (const auto& remainder : result.remainders)
+      if (remainder.output == output) residual -= along_rows(s, remainder);
     const auto line = find_line(telemetry_, s, output, residual);
     if (!line) continue;
     result.lines.push_back(*line);
@@ -246,7 +256,9 @@ void Diagnosis::name_events(TelemetryDiagnosis& result) {
     entry.figures = {{{"amplitude", std::string(kOutputUnits[place(output)]), line->amplitude},
                       line->amplitude - half,
                       line->amplitude + half},
-                     {{"frequency", "Hz", line->frequency_hz}, line->frequency_hz, line->frequency_hz}};
+                     {{"frequency", "Hz", line->frequency_hz},
+                      line->frequency_hz - 1.96 * line->frequency_deviation_hz,
+                      line->frequency_hz + 1.96 * line->frequency_deviation_hz}};
     result.named.push_back(std::move(entry));
   }
 }
@@ -280,9 +292,10 @@ void Diagnosis::decide(TelemetryDiagnosis& result) {
     result.ambiguous.push_back(std::move(*entry));
     entry = result.named.erase(entry);
   }
-  const bool unknown = std::ranges::any_of(kOutputs, structured);
+  const bool unknown = std::ranges::any_of(kOutputs, structured) ||
+                       std::ranges::any_of(result.colours, [](const Colour& c) { return c.is_line(); });
   for (const auto& colour : result.colours) {
-    if (unknown) continue;
+    if (unknown || colour.is_line()) continue;
     Explanation entry;
     entry.worth = colour.evidence;
     const bool walk = colour.walk_over_flicker > 0.0;
@@ -290,7 +303,8 @@ void Diagnosis::decide(TelemetryDiagnosis& result) {
     entry.form = walk ? "random walk beyond what the model states" : "1/f noise beyond what the model states";
     entry.probability = 1.0 / (1.0 + std::exp(-0.5 * std::abs(colour.walk_over_flicker)));
     const double value = walk ? colour.walk : colour.flicker;
-    entry.figures = {{{"density", walk ? "deg/h/sqrt(s)" : "deg/h", value}, 0.5 * value, 2.0 * value}};
+    const double factor = std::exp(1.96 * colour.log_deviation);
+    entry.figures = {{{"density", walk ? "deg/h/sqrt(s)" : "deg/h", value}, value / factor, value * factor}};
     if (std::abs(colour.walk_over_flicker) < kNameMargin) {
       entry.near.emplace_back(walk ? "rate_flicker" : "rate_random_walk", std::abs(colour.walk_over_flicker));
       entry.doubt = "the recording is too short to tell the slope of the noise";
@@ -299,10 +313,10 @@ void Diagnosis::decide(TelemetryDiagnosis& result) {
   }
   const bool several =
       std::ranges::any_of(result.ambiguous, [](const Explanation& e) { return !e.near.empty(); });
-  if (!result.named.empty())
-    result.verdict = Verdict::named;
-  else if (several && !unknown)
+  if (several && !unknown)
     result.verdict = Verdict::ambiguous;
+  else if (!result.named.empty())
+    result.verdict = Verdict::named;
   else if (unknown)
     result.verdict = Verdict::unknown;
   else if (recalibrated(result))
@@ -311,21 +325,21 @@ void Diagnosis::decide(TelemetryDiagnosis& result) {
 
 TelemetryDiagnosis Diagnosis::run() {
   NominalModel refitted = given_;
-  double start = 0.0;
+  Unsettled start;
   relinearise(refitted, start, {}, 3);
   options_.tick(0.1);
   Around best = search_from(refitted, start);
   options_.tick(0.5);
   // Where a strong effect pulled the baseline away, the model as given is the better place to begin.
   if (std::abs(std::log(refitted.time_constant_s / given_.time_constant_s)) > 0.003) {
-    Around other = search_from(given_, 0.0);
+    Around other = search_from(given_, {});
     if (other.found.best.score < best.found.best.score) best = std::move(other);
   }
   options_.tick(0.7);
   TelemetryDiagnosis result;
   result.hypotheses = best.hypotheses;
   result.corrected = best.hypotheses->simulation().model;
-  result.start_degc = best.hypotheses->simulation().start_degc;
+  result.unsettled = best.hypotheses->simulation().unsettled;
   explain(result, best.found);
   compare_parameters(result);
   options_.tick(0.8);
@@ -338,7 +352,7 @@ TelemetryDiagnosis Diagnosis::run() {
   result.decoys = decoys(*result.hypotheses, result.members, result.final, options_.seed);
   const VectorXd steps =
       result.final.coefficients.head(static_cast<Index>(result.hypotheses->baseline().size()));
-  move_parameters(result.hypotheses->baseline(), steps, result.corrected, result.start_degc);
+  move_parameters(result.hypotheses->baseline(), steps, result.corrected, result.unsettled);
   return result;
 }
 

@@ -8,14 +8,19 @@
 #include "golden/diagnosis/earned_name.hpp"
 #include "golden/diagnosis/effect_search.hpp"
 #include "golden/diagnosis/events.hpp"
+#include "golden/diagnosis/lines.hpp"
 #include "golden/diagnosis/unexplained.hpp"
 
 namespace hemi::diagnosis {
+
+/// Score by which a name has to be ahead of its nearest rival.
+inline constexpr double kNameMargin = 10.0;
 
 struct TelemetryOptions {
   Eigen::Index most_rows = 1800;  ///< blocks that every output is averaged to
   std::uint64_t seed = 1;
   std::function<void(double share)> tick = [](double) {};  ///< called between steps; may throw
+  std::function<void()> check = [] {};                     ///< called often; may throw
 };
 
 /// An effect of the catalogue that explains something, and what competes with it.
@@ -48,7 +53,7 @@ struct TelemetryDiagnosis {
   Isolability isolability;
   Decoys decoys;
   NominalModel corrected;
-  double start_degc = 0.0;
+  Unsettled unsettled;
   std::shared_ptr<const Telemetry> telemetry;  ///< without the rows that events have spoilt
   std::shared_ptr<Hypotheses> hypotheses;      ///< around the corrected model
   HypothesisFit baseline, final;               ///< residuals before and after

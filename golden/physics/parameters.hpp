@@ -80,7 +80,8 @@ struct Environment {
   double supply_v = 5.0;
   double amplitude_setpoint = 1.0;
   double quadrature_trim_v = 0.0;
-  double power_on_s = 0.0;  ///< when the electronics was switched on
+  double power_on_s = 0.0;         ///< when the electronics was switched on
+  double board_heater_degc = 0.0;  ///< what a heater on the board adds to it, settled
 };
 
 }  // namespace hemi::physics

@@ -40,7 +40,9 @@ World::World(const Instrument& instrument, const std::vector<ActiveEffect>& effe
     : instrument_(instrument),
       heated_(instrument),
       network_(instrument, start.chamber_degc),
-      board_rise_(instrument.board_rise_degc, instrument.board_time_constant_s) {
+      board_rise_(instrument.board_rise_degc, instrument.board_time_constant_s),
+      board_heater_(instrument.board_time_constant_s),
+      heater_rise_degc_(start.board_heater_degc) {
   std::map<std::string, std::uint64_t> occurrences;
   for (const ActiveEffect& effect : effects) {
     const auto entry = catalogue().find(effect.id);
@@ -73,6 +75,8 @@ void World::advance(const Environment& next, double amplitude) {
   conditions_.environment = next;
   conditions_.amplitude = amplitude;
   board_rise_.advance(next.time_s, next.power_on_s);
+  heater_rise_degc_ =
+      board_heater_.advance(heater_rise_degc_, next.board_heater_degc, next.board_heater_degc, dt_s);
   update(dt_s);
 }
 
@@ -90,7 +94,7 @@ void World::update(double dt_s) {
   temperatures.case_degc = network_.case_degc();
   temperatures.stem_degc = network_.stem_degc();
   temperatures.shell_degc = network_.shell_degc() + heat_degc;
-  temperatures.board_degc = temperatures.case_degc + board_rise_.value_degc();
+  temperatures.board_degc = temperatures.case_degc + board_rise_.value_degc() + heater_rise_degc_;
   conditions_.shell_slope_degc_s = network_.shell_slope_degc_s();
   if (dt_s > 0.0) conditions_.shell_slope_degc_s += (heat_degc - heat_degc_) / dt_s;
   heat_degc_ = heat_degc;

@@ -46,6 +46,8 @@ class World {
   Parameters parameters_;
   ThermalNetwork network_;
   PowerOnRise board_rise_;
+  Pole board_heater_;
+  double heater_rise_degc_ = 0.0;
   double heat_degc_ = 0.0;
   double step_s_ = 0.0;
 };

@@ -98,5 +98,29 @@ TEST_F(Gaps, MissingCellsInTelemetry) {
   }
 }
 
+// 2000 rows, 300 of them missing, and one value: all others enter, none across a gap.
+TEST_F(Gaps, InAnAllanDeviation) {
+  write_telemetry(2000, 700, 1000);
+  auto telemetry = recording::read_recording(path("chamber.csv"));
+  for (auto& channel : telemetry.channels)
+    if (channel.name == "rate_dph") channel.values[1200] = std::nan("");
+  recording::write_file(path("holes.csv"), telemetry);
+  const auto json = good({"allan", "holes.csv", "--json"}).json();
+  EXPECT_EQ(json["samples"], 1699);
+  EXPECT_EQ(json["stretches"], 3);
+  EXPECT_EQ(json["points"][0]["pairs"], 1699 - 3);
+  // 700 and 500 and 499 rows: twice 256 fit into the first alone.
+  EXPECT_EQ(json["points"].back()["pairs"], 700 - 2 * 256 + 1);
+  EXPECT_EQ(json["rate_random_walk"], nullptr);
+  const std::string text = good({"allan", "holes.csv", "--separate", "--report", "a.html"}).out;
+  EXPECT_NE(text.find("separate Allan deviation of rate_dph [deg/h], 1699 of 1700 samples"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("in 3 stretches"), std::string::npos);
+  EXPECT_NE(text.find("rate random walk: no stretch of slope +1/2 over a decade, so none is given"),
+            std::string::npos);
+  EXPECT_NE(content("a.html").find("1699"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace hemi::cli::testing

@@ -95,7 +95,7 @@ TEST_F(Simulate, BadInputs) {
   expect_bad({"simulate", "a.toml", "-o", "out"}, {"a.toml:2: scenario.duration", "'kg'"});
   file("b.toml", "[scenario]\nduration = 10\n[instrument]\nqualityfactor = 1\n");
   expect_bad({"simulate", "b.toml", "-o", "out"}, {"b.toml:4: instrument", "did you mean 'quality_factor'"});
-  expect_bad({"simulate", "none.toml"}, {"none.toml: No such file"});
+  expect_bad({"simulate", "none.toml"}, {"none.toml: No such file", "room_to_minus_20"});
   file("c.toml", "[scenario]\nduration = 10\n");
   file("plain", "x");
   expect_bad({"simulate", "c.toml", "-o", "plain"}, {"plain", "no directory"});
@@ -115,20 +115,36 @@ TEST_F(Simulate, Interrupted) {
   for (const auto& name : after) EXPECT_EQ(name.find(".partial"), std::string::npos) << name;
 }
 
+// By name, with or without its ending, from any directory; a file of that name goes before it, a directory
+// does not.
+TEST_F(Simulate, ShippedScenariosByName) {
+  fs::create_directory(path("constant"));
+  for (const std::string name : {"constant", "constant.toml"}) {
+    const auto json = good({"simulate", name, "-o", "out", "--json"}).json();
+    EXPECT_EQ(json["name"], "constant");
+    EXPECT_EQ(json["rows"], 18000);
+  }
+  file("constant.toml", "[scenario]\nduration = \"20 min\"\n");
+  EXPECT_EQ(good({"simulate", "constant.toml", "-o", "out", "--json"}).json()["rows"], 1200);
+  expect_bad({"simulate", "elsewhere/constant"}, {"elsewhere/constant: No such file"});
+}
+
 TEST_F(Simulate, ShippedScenarios) {
   ship("paper_soaks", {{R"(period = "5 h", ramp = 1.0)", R"(period = "2 min", ramp = 60)"}});
   ship("room_to_minus_20", {{R"(duration = "5 h")", R"(duration = "15 min")"}});
   ship("cycles", {{R"(hold = "2 h", ramp = 0.5)", R"(hold = "2 min", ramp = 60)"}});
+  ship("hysteresis", {{R"(hold = "2 h", ramp = 0.5)", R"(hold = "2 min", ramp = 60)"}});
   ship("rate_table", {{R"(hold = "60 s")", R"(hold = "6 s")"}});
   ship("constant", {{R"(duration = "5 h")", R"(duration = "15 min")"}});
-  for (const std::string name : {"paper_soaks", "room_to_minus_20", "cycles", "rate_table", "constant"}) {
+  for (const std::string name :
+       {"paper_soaks", "room_to_minus_20", "cycles", "hysteresis", "rate_table", "constant"}) {
     good({"simulate", name + ".toml", "-o", "out"});
     const auto recording = recording::read_recording(path("out/" + name + ".csv"));
     EXPECT_GT(recording.rows(), 400U) << name;
     good({"run", "out/" + name + ".csv", "-m", "out/" + name + ".model.json"});
   }
   const auto shipped = fs::directory_iterator(HEMI_SOURCE_DIR "/scripts/scenarios");
-  EXPECT_EQ(std::distance(begin(shipped), end(shipped)), 6) << "a scenario that no test runs";
+  EXPECT_EQ(std::distance(begin(shipped), end(shipped)), 7) << "a scenario that no test runs";
 }
 
 // Start-up at a tenth of the amplitude, locked and closed within 4 s; then the rate that the scenario turns

@@ -57,6 +57,25 @@ TEST(TelemetryDiagnosis, NamesHysteresis) {
   EXPECT_EQ(result.named[0].effect, "thermal_hysteresis");
 }
 
+// The case went on along its curve while nothing was recorded: no effect, but a resonator that is elsewhere.
+TEST(TelemetryDiagnosis, APowerCutAloneIsConsistent) {
+  for (const std::uint64_t seed : {71U, 72U}) {
+    const auto result = diagnosed({.seed = seed, .cut_rows = 1500});
+    EXPECT_EQ(result.verdict, Verdict::consistent) << seed << moved(result);
+  }
+}
+
+TEST(TelemetryDiagnosis, NamesWarmthThatFadesInAPowerCut) {
+  expect_named(diagnosed({.seed = 73, .warmth_degc = 0.5, .cut_rows = 1500}), "self_heating", 0.5);
+}
+
+// As slow as a random walk is, but no noise: its innovations show a line.
+TEST(TelemetryDiagnosis, ASlowWaveIsNoRandomWalk) {
+  const auto result = diagnosed({.seed = 81, .wave_dph = 0.3});
+  EXPECT_EQ(result.verdict, Verdict::unknown);
+  EXPECT_TRUE(result.named.empty());
+}
+
 TEST(TelemetryDiagnosis, WhatIsInNoCatalogueIsUnknownAndWhereItLivesIsSaid) {
   const auto result = diagnosed({.seed = 61, .ripple_dph = 0.6});
   EXPECT_EQ(result.verdict, Verdict::unknown);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -20,6 +21,9 @@ struct Recipe {
   double ripple_dph = 0.0;      ///< of the rate, one period each 4 degC: in no catalogue
   double hysteresis_dph = 0.0;  ///< Duhem: h' = (T' - |T'| h) / 6 degC
   double tau_scale = 1.0;       ///< of the model's time constant
+  double wave_dph = 0.0;        ///< of the rate, one period each 6000 s: in no catalogue
+  double warmth_degc = 0.0;     ///< final rise of the resonator while powered, time constant 1200 s
+  Eigen::Index cut_rows = 0;    ///< power is off for these rows, from the 8000th
 };
 
 inline NominalModel nominal() {
@@ -59,11 +63,16 @@ inline Telemetry telemetry(const Recipe& recipe) {
   for (auto& output : t.outputs) output = Eigen::VectorXd::Zero(kRows);
   t.powered = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(kRows, true);
   const double tau = m.time_constant_s * recipe.tau_scale;
-  double degc = at_case(0.0), before = degc, loop = 0.0;
+  double degc = at_case(0.0), before = degc, loop = 0.0, heat = 0.0, behind_case = degc;
+  const auto powered = [&](Eigen::Index i) { return i < 8000 || i >= 8000 + recipe.cut_rows; };
   double frequency_before = polynomial(m.frequency_hz, degc);
   for (Eigen::Index i = 0; i < kRows; ++i) {
-    for (int k = 0; k < kSteps && i > 0; ++k)
-      degc += (at_case(static_cast<double>(i - 1) + (k + 0.5) / kSteps) - degc) / (tau * kSteps);
+    for (int k = 0; k < kSteps && i > 0; ++k) {
+      behind_case +=
+          (at_case(static_cast<double>(i - 1) + (k + 0.5) / kSteps) - behind_case) / (tau * kSteps);
+      heat += ((powered(i - 1) ? recipe.warmth_degc : 0.0) - heat) / (1200.0 * kSteps);
+    }
+    degc = behind_case + heat;
     const double step = (degc - before) / 6.0;
     loop += step - std::abs(step) * loop;
     before = degc;
@@ -81,10 +90,18 @@ inline Telemetry telemetry(const Recipe& recipe) {
         1.4e-4 * normal(random);
     t.outputs[place(Output::quadrature)][i] =
         amplitude * polynomial(m.quadrature_v, degc) + 1.4e-4 * normal(random);
-    t.outputs[place(Output::rate)][i] = m.bias_dph[0] + m.bias_dph[1] * f + m.bias_dph[2] * f * f +
-                                        m.bias_dph[4] * df + recipe.hysteresis_dph * loop +
-                                        recipe.ripple_dph * std::sin(2.0 * std::numbers::pi * degc / 4.0) +
-                                        0.5 * normal(random);
+    t.outputs[place(Output::rate)][i] =
+        m.bias_dph[0] + m.bias_dph[1] * f + m.bias_dph[2] * f * f + m.bias_dph[4] * df +
+        recipe.hysteresis_dph * loop + recipe.ripple_dph * std::sin(2.0 * std::numbers::pi * degc / 4.0) +
+        recipe.wave_dph * std::sin(2.0 * std::numbers::pi * time / 6000.0) + 0.5 * normal(random);
+  }
+  if (recipe.cut_rows > 0) {
+    t.powered.segment(8000, recipe.cut_rows) = false;
+    for (auto& output : t.outputs)
+      output.segment(8000, recipe.cut_rows).setConstant(std::numeric_limits<double>::quiet_NaN());
+    // A straight line, as a reader fills in what was not recorded.
+    t.case_degc.segment(8000, recipe.cut_rows) =
+        Eigen::VectorXd::LinSpaced(recipe.cut_rows, t.case_degc[7999], t.case_degc[8000 + recipe.cut_rows]);
   }
   return t;
 }

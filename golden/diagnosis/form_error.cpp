@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "golden/diagnosis/form_error.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace hemi::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+constexpr std::size_t kMostForms = 24;
+constexpr Index kMostDirections = 8;
+
+// Forms and shapes of one effect, thinned to kMostForms.
+std::vector<Member> forms_of(const Hypotheses& h, const std::string& effect) {
+  std::vector<Member> all;
+  for (std::size_t f = 0; f < h.families().size(); ++f)
+    if (h.families()[f].effect == effect)
+      for (const auto& shape : h.families()[f].grid) all.push_back({f, shape});
+  std::vector<Member> kept;
+  const std::size_t each = (all.size() + kMostForms - 1) / kMostForms;
+  for (std::size_t i = 0; i < all.size(); i += each) kept.push_back(all[i]);
+  return kept;
+}
+
+// Columns that match `trace` best beside `own`: coefficients of `columns` alone.
+VectorXd matched(const MatrixXd& own, const MatrixXd& columns, const VectorXd& trace) {
+  MatrixXd all(own.rows(), own.cols() + columns.cols());
+  all << own, columns;
+  const VectorXd scale = all.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+  MatrixXd normal = scale.asDiagonal() * (all.transpose() * all) * scale.asDiagonal();
+  normal.diagonal().array() += 1e-9;
+  const VectorXd c = scale.asDiagonal() * normal.ldlt().solve(scale.asDiagonal() * (all.transpose() * trace));
+  return c.tail(columns.cols());
+}
+
+Reduced times(const Reduced& columns, const MatrixXd& by) {
+  Reduced result;
+  for (std::size_t c = 0; c < columns.size(); ++c) result[c] = columns[c] * by;
+  return result;
+}
+
+}  // namespace
+
+Reduced form_directions(Hypotheses& h, const std::vector<Member>& members, const HypothesisFit& fit,
+                        const std::vector<std::size_t>& which) {
+  const RowSpace& space = h.space();
+  const MatrixXd own = whiten(space, fit.noise, h.baseline_rows());
+  std::vector<Reduced> differences;
+  for (const std::size_t m : which) {
+    const Reduced& mine = h.columns(members[m]);
+    const Reduced trace = times(mine, fit.coefficients.segment(fit.first[m], mine[0].cols()));
+    const VectorXd white = whiten(space, fit.noise, trace).col(0);
+    const auto forms = forms_of(h, h.families()[members[m].family].effect);
+    const double prior = 1.0 / std::sqrt(static_cast<double>(forms.size()));
+    for (const auto& form : forms) {
+      if (form == members[m]) continue;
+      const Reduced& columns = h.columns(form);
+      Reduced other = times(columns, matched(own, whiten(space, fit.noise, columns), white));
+      for (std::size_t c = 0; c < other.size(); ++c) other[c] = prior * (other[c] - trace[c]);
+      differences.push_back(std::move(other));
+    }
+  }
+  Reduced none;
+  for (const Output output : kOutputs) none[place(output)].resize(space.rows(output), 0);
+  if (differences.empty()) return none;
+  std::vector<const Reduced*> parts;
+  for (const auto& each : differences) parts.push_back(&each);
+  const Reduced all = joined(parts);
+  // What the baseline takes of a difference is no difference.
+  MatrixXd white = whiten(space, fit.noise, all);
+  const MatrixXd q = own.colPivHouseholderQr().householderQ() * MatrixXd::Identity(own.rows(), own.cols());
+  white -= q * (q.transpose() * white);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(white.transpose() * white);
+  const Index n = axes.eigenvalues().size();
+  Index count = 0;
+  while (count < std::min(n, kMostDirections) && axes.eigenvalues()[n - 1 - count] > 1.0) ++count;
+  return times(all, axes.eigenvectors().rightCols(count));
+}
+
+double gain_beside_forms(Hypotheses& h, const std::vector<Member>& members, const HypothesisFit& fit,
+                         std::size_t which) {
+  std::vector<std::size_t> others;
+  std::vector<Member> rest;
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    if (m == which) continue;
+    others.push_back(m);
+    rest.push_back(members[m]);
+  }
+  const Reduced forms = form_directions(h, members, fit, others);
+  const Reduced design = h.design(rest);
+  const Index known = design[0].cols();
+  const MatrixXd own = whiten(h.space(), fit.noise, joined({&design, &forms}));
+  VectorXd prior = VectorXd::Ones(own.cols());
+  prior.head(known) = h.prior_precision(known);
+  const Reduced& mine = h.columns(members[which]);
+  MatrixXd columns = whiten(h.space(), fit.noise, joined({&mine, &h.data()}));
+  const VectorXd scale = own.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+  MatrixXd normal = scale.asDiagonal() * (own.transpose() * own) * scale.asDiagonal();
+  normal.diagonal() += scale.cwiseAbs2().cwiseProduct(prior);
+  normal.diagonal().array() += 1e-12;
+  const MatrixXd right = scale.asDiagonal() * (own.transpose() * columns);
+  MatrixXd left = columns.transpose() * columns - right.transpose() * normal.ldlt().solve(right);
+  const Index n = mine[0].cols();
+  left.diagonal().head(n) *= 1.0 + 1e-9;
+  const VectorXd with_data = left.col(n).head(n);
+  return with_data.dot(left.topLeftCorner(n, n).ldlt().solve(with_data));
+}
+
+}  // namespace hemi::diagnosis
