@@ -158,12 +158,22 @@ Json not_testable(const TelemetryDiagnosis& result, const DiagnosisInput& input)
 // A free function of an input, in units, that has no physical name.
 Json unknown_effect(const diagnosis::Remainder& remainder) {
   const auto list = [](const Eigen::VectorXd& v) { return std::vector<double>(v.begin(), v.end()); };
+  const auto channel = kOutputNames[place(remainder.output)];
+  if (remainder.variable.empty())
+    return {{"id", "unknown"},
+            {"probability", 1.0},
+            {"equation", fmt::format("{} moves beyond its noise, along no input", channel)},
+            {"explanation",
+             fmt::format("neither an effect of the catalogue nor a function of one input or of its "
+                         "past explains what {} does",
+                         channel)},
+            {"parameters", Json::object()},
+            {"score_lost_without", remainder.evidence}};
   return {{"id", "unknown"},
           {"probability", 1.0},
-          {"equation", fmt::format("{} += g({}), linear between nodes", kOutputNames[place(remainder.output)],
-                                   remainder.variable)},
-          {"explanation", fmt::format("no effect of the catalogue explains what {} does with {}",
-                                      kOutputNames[place(remainder.output)], remainder.variable)},
+          {"equation", fmt::format("{} += g({}), linear between nodes", channel, remainder.variable)},
+          {"explanation", fmt::format("no effect of the catalogue explains what {} does with {}", channel,
+                                      remainder.variable)},
           {"parameters", Json::object()},
           {"correction",
            {{"channel", std::string(kOutputNames[place(remainder.output)])},

@@ -127,11 +127,32 @@ class Reader {
       return VectorXd::Constant(grid_.places, rest);
     }
     VectorXd x = on_grid(channel->values, grid_);
+    if (!smooth) note_unsure(x);
     fill(x, smooth);
     return x;
   }
 
+  // No output can be predicted where an input went from one level to another unseen.
+  void drop_unsure(Telemetry& t) const {
+    for (auto& output : t.outputs)
+      for (const auto& [begin, end] : unsure_)
+        if (output.size() > 0) output.segment(begin, end - begin).setConstant(kNothing);
+  }
+
  private:
+  void note_unsure(const VectorXd& x) {
+    constexpr double kSame = 1e-3;
+    Index last = -1;
+    for (Index i = 0; i < x.size(); ++i) {
+      if (std::isnan(x[i])) continue;
+      if (last >= 0 && i > last + 1 &&
+          std::abs(x[i] - x[last]) > kSame * std::max(std::abs(x[i]), std::abs(x[last])))
+        unsure_.emplace_back(last + 1, i);
+      last = i;
+    }
+  }
+
+  std::vector<std::pair<Index, Index>> unsure_;
   const recording::Recording& recording_;
   const Grid& grid_;
   DiagnosisInput& input_;
@@ -199,6 +220,7 @@ DiagnosisInput telemetry_of(const recording::Recording& recording, const recordi
       t.outputs[place(output)] = on_grid(channel->values, grid);
   }
   t.powered = powered_rows(t);
+  reader.drop_unsure(t);
   if (!t.has_case) read_temperature_from_frequency(recording, model, input);
   return input;
 }

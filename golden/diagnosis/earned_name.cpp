@@ -115,18 +115,29 @@ struct LeftOut {
   VectorXd white;
 };
 
-LeftOut left_out(const Hypotheses& h, const Reduced& design, const Noise& noise) {
+// Where the resonator began is the run's state, not a parameter: it is carried through as `whole` has it.
+LeftOut left_out(const Hypotheses& h, const Reduced& all, const Noise& noise, const VectorXd& whole) {
   const RowSpace& space = h.space();
+  std::vector<Index> state, free;
+  for (Index j = 0; j < all[0].cols(); ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    (k < h.baseline().size() && h.baseline()[k].nuisance ? state : free).push_back(j);
+  }
+  const VectorXd at = whole(state);
+  Reduced design, data = h.data();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    design[k] = all[k](Eigen::all, free);
+    data[k].col(0) -= all[k](Eigen::all, state) * at;
+  }
   const MatrixXd white = whiten(space, noise, design);
-  const VectorXd y = whiten(space, noise, h.data());
+  const VectorXd y = whiten(space, noise, data);
   const auto numbers = block_numbers(space);
-  const VectorXd prior = h.prior_precision(design[0].cols());
-  LeftOut result{h.data(), y};
+  LeftOut result{data, y};
   for (Index fold = 0; fold < kFolds; ++fold) {
     const auto kept = rows_where(numbers, [&](Index block) { return fold_of(space, block) != fold; });
     const auto out = rows_where(numbers, [&](Index block) { return fold_of(space, block) == fold; });
     const MatrixXd rest = white(kept, Eigen::all);
-    const VectorXd c = Solver(rest, prior).solve(rest.transpose() * VectorXd(y(kept)));
+    const VectorXd c = Solver(rest, VectorXd::Zero(rest.cols())).solve(rest.transpose() * VectorXd(y(kept)));
     result.white(out) -= white(out, Eigen::all) * c;
     for (const Output output : kOutputs) {
       const std::size_t k = place(output);
@@ -155,8 +166,8 @@ std::vector<Improvement> improvements(Hypotheses& h, const std::vector<Member>& 
                                       const HypothesisFit& fit) {
   std::vector<Improvement> list;
   const HypothesisFit baseline = h.fit({}, fit.noise);
-  const LeftOut before = left_out(h, h.baseline_rows(), fit.noise);
-  const LeftOut after = left_out(h, extended(h, members, fit).rows, fit.noise);
+  const LeftOut before = left_out(h, h.baseline_rows(), fit.noise, baseline.coefficients);
+  const LeftOut after = left_out(h, extended(h, members, fit).rows, fit.noise, fit.coefficients);
   Index begin = 0;
   for (const Output output : kOutputs) {
     const std::size_t c = place(output);

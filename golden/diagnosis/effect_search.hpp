@@ -6,7 +6,7 @@
 namespace hemi::diagnosis {
 
 /// What an effect must gain beyond its price to stay [-2 log likelihood].
-inline constexpr double kWorth = 8.0;
+inline constexpr double kWorth = 12.0;
 
 /// A set of effects with what it costs: -2 log likelihood, and a penalty for every effect (choice among the
 /// catalogue, its coefficients, its shapes).

@@ -75,18 +75,17 @@ EffectFamily deviation(const char* effect, Output output, int exponent) {
   return family;
 }
 
-EffectFamily gas_leak(bool filling) {
+// Towards the pressure outside, in 80 hours as good as in a straight line.
+EffectFamily gas_leak() {
   EffectFamily family;
   family.effect = "gas_leak";
-  family.form = filling ? "drive = drive (1 + r t0 (1 - exp(-t / t0)))" : "drive = drive (1 + r t)";
-  if (filling) {
-    family.grid = geometric_grid(5.0, 80.0, 2.0);
-    family.spacing = {2.0};
-  }
+  family.form = "drive = drive (1 + r t0 (1 - exp(-t / t0)))";
+  family.grid = geometric_grid(5.0, 80.0, 2.0);
+  family.spacing = {2.0};
   family.columns = [](const Simulation& s, const Shape& shape) {
     const ArrayXd hours = s.time_s / kHour_s;
-    const ArrayXd grown = shape.empty() ? hours : ArrayXd(shape[0] * (1.0 - (-hours / shape[0]).exp()));
-    return std::vector<Trace>{in(Output::drive, command(s, Output::drive) * grown)};
+    return std::vector<Trace>{
+        in(Output::drive, command(s, Output::drive) * shape[0] * (1.0 - (-hours / shape[0]).exp()))};
   };
   family.figures = [](const Simulation&, const Shape& c, const Shape&) {
     return std::vector<Figure>{{"rate", "1/h", c[0]}};
@@ -122,19 +121,19 @@ EffectFamily split_in_time() {
   return family;
 }
 
-// True amplitude A / (1 + e), e = k (Tb - 25): force commands fall with it, the rate's scale with them.
-EffectFamily pickoff_gain(double rate_sign, bool quadrature) {
+// True amplitude A / (1 + e), e = k (Tb - 25): force commands fall with it, and so does the Coriolis force.
+EffectFamily pickoff_gain(bool rate, bool quadrature) {
   EffectFamily family;
   family.effect = "pickoff_gain";
   family.form = "e = k (Tb - 25), drive /= 1 + e";
   if (quadrature) family.form += ", quadrature /= 1 + e";
-  if (rate_sign != 0.0) family.form += rate_sign > 0 ? ", rate *= 1 + e" : ", rate /= 1 + e";
-  family.columns = [rate_sign, quadrature](const Simulation& s, const Shape&) {
+  if (rate) family.form += ", rate /= 1 + e";
+  family.columns = [rate, quadrature](const Simulation& s, const Shape&) {
     const ArrayXd e = s.board_degc - kBoardReference_degc;
     Trace trace = in(Output::drive, -command(s, Output::drive) * e);
     if (quadrature)
       trace[Output::quadrature] = -(command(s, Output::quadrature) - s.telemetry->trim_v.array()) * e;
-    if (rate_sign != 0.0) trace[Output::rate] = rate_sign * s.telemetry->rate_in_dph.array() * e;
+    if (rate) trace[Output::rate] = -s.telemetry->rate_in_dph.array() * e;
     return std::vector<Trace>{trace};
   };
   family.figures = [](const Simulation&, const Shape& c, const Shape&) {
@@ -144,7 +143,7 @@ EffectFamily pickoff_gain(double rate_sign, bool quadrature) {
 }
 
 void add_drive(std::vector<EffectFamily>& families, const Telemetry& t) {
-  for (const bool filling : {false, true}) families.push_back(gas_leak(filling));
+  families.push_back(gas_leak());
   if (moves(t.case_degc, 1.0)) {
     for (const int exponent : {0, 2, 3})
       families.push_back(deviation("damping_temperature", Output::drive, exponent));
@@ -154,10 +153,8 @@ void add_drive(std::vector<EffectFamily>& families, const Telemetry& t) {
   if (!t.has_board || !moves(t.board_degc, 0.5)) return;
   const bool turning = t.has(Output::rate) && moves(t.rate_in_dph, 1.0);
   for (const bool quadrature : {false, true}) {
-    families.push_back(pickoff_gain(0.0, quadrature));
-    if (!turning) continue;
-    families.push_back(pickoff_gain(1.0, quadrature));
-    families.push_back(pickoff_gain(-1.0, quadrature));
+    families.push_back(pickoff_gain(false, quadrature));
+    if (turning) families.push_back(pickoff_gain(true, quadrature));
   }
 }
 

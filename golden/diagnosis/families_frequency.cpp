@@ -124,15 +124,17 @@ EffectFamily square_of_input(const char* effect, const char* form, const Eigen::
   return family;
 }
 
-EffectFamily loop_lag(const Simulation& s) {
+EffectFamily loop_lag(const Simulation& s, int poles) {
   EffectFamily family;
   family.effect = "pll_lag";
-  family.form = "tau_p f_out' = f - f_out";
+  family.form = poles == 1 ? "tau_p f_out' = f - f_out" : "f_out behind f by two poles of tau_p / 2";
   family.grid = geometric_grid(2.0 * s.telemetry->step_s, 300.0 * s.telemetry->step_s, kLagRatio);
   family.spacing = {kLagRatio};
-  family.columns = [](const Simulation& at, const Shape& shape) {
-    return std::vector<Trace>{
-        counted(lag(at.smooth_f, at.telemetry->step_s, shape[0], at.smooth_f[0]) - at.smooth_f)};
+  family.columns = [poles](const Simulation& at, const Shape& shape) {
+    ArrayXd behind = at.smooth_f;
+    for (int i = 0; i < poles; ++i)
+      behind = lag(behind, at.telemetry->step_s, shape[0] / static_cast<double>(poles), behind[0]);
+    return std::vector<Trace>{counted(behind - at.smooth_f)};
   };
   family.figures = [](const Simulation&, const Shape& c, const Shape& shape) {
     return std::vector<Figure>{{"time_constant", "s", c[0] * shape[0]}};
@@ -159,7 +161,7 @@ std::vector<EffectFamily> frequency_families(const Simulation& s) {
   if (moves(t.case_degc, 1.0)) {
     families.push_back(polynomial_order(1));
     families.push_back(polynomial_order(2));
-    families.push_back(loop_lag(s));
+    for (const int poles : {1, 2}) families.push_back(loop_lag(s, poles));
   }
   if (t.has_board && moves(t.board_degc, 0.5))
     for (const int order : {1, 2, 3, 5}) families.push_back(oscillator_temperature(order));

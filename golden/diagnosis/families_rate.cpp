@@ -131,11 +131,10 @@ ArrayXd late(const ArrayXd& x, double n) {
 
 // The nominal output without the thermometer's noise, which a delay would move against itself.
 ArrayXd smooth_nominal(const Simulation& s, Output output) {
-  const ArrayXd amplitude = s.telemetry->amplitude;
   if (output == Output::frequency) return s.smooth_f;
-  if (output == Output::drive) return amplitude * s.model.drive_v.at(s.smooth_degc);
+  if (output == Output::drive) return s.smooth_amplitude * s.model.drive_v.at(s.smooth_degc);
   if (output == Output::quadrature)
-    return amplitude * s.model.quadrature_v.at(s.smooth_degc) + s.telemetry->trim_v.array();
+    return s.smooth_amplitude * s.model.quadrature_v.at(s.smooth_degc) + s.telemetry->trim_v.array();
   const auto terms = bias_terms(s.smooth_f, slope_in_time(s.smooth_f, s.telemetry->step_s));
   ArrayXd rate = s.model.scale_factor * s.telemetry->rate_in_dph.array();
   for (std::size_t i = 0; i < kBiasTermCount; ++i) rate += s.model.bias_dph[i] * terms[i];

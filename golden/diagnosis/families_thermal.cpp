@@ -12,6 +12,8 @@ using Shape = std::vector<double>;
 constexpr double kLagRatio = 1.35;
 constexpr double kRadiusRatio = 1.5;
 constexpr double kLeastSwing_degc = 1.0;
+constexpr double kLongestSeries_s = 600.0;
+constexpr double kFastPart = 0.15;
 
 ArrayXd case_behind(const Simulation& s, double tau_s) {
   const ArrayXd& degc = s.smooth_case_degc;
@@ -32,12 +34,19 @@ Trace in_rate(const ArrayXd& column) {
   return trace;
 }
 
-EffectFamily second_time_constant(const Simulation& s, bool beside) {
+// How the second body stands to the first.
+enum class SecondBody { in_series, shares_the_way, beside };
+
+EffectFamily second_time_constant(const Simulation& s, SecondBody body) {
   EffectFamily family;
   family.effect = "thermal_second_time_constant";
-  family.form = beside ? "T += w (lag(case, tau2) - T)" : "T += w (lag(T, tau2) - T)";
-  const double shortest = beside ? 1.35 * s.model.time_constant_s : std::max(90.0, 4.0 * s.telemetry->step_s);
-  family.grid = geometric_grid(shortest, 20000.0, kLagRatio);
+  const bool beside = body == SecondBody::beside, series = body == SecondBody::in_series;
+  family.form = series   ? "T = lag(T, tau2)"
+                : beside ? "T += w (lag(case, tau2) - T)"
+                         : "T += w (lag(T, tau2) - T)";
+  family.grid = series   ? geometric_grid(4.0 * s.telemetry->step_s, kLongestSeries_s, kLagRatio)
+                : beside ? geometric_grid(1.35 * s.model.time_constant_s, 20000.0, kLagRatio)
+                         : geometric_grid(kLongestSeries_s, 20000.0, kLagRatio);
   family.spacing = {kLagRatio};
   family.columns = [beside](const Simulation& at, const Shape& shape) {
     const ArrayXd behind = beside ? case_behind(at, shape[0])
@@ -48,8 +57,9 @@ EffectFamily second_time_constant(const Simulation& s, bool beside) {
     return std::vector<Figure>{{"second_time_constant", "s", shape[0]}, {"weight", "1", c[0]}};
   };
   // A pole in series has weight one; poles side by side share it.
-  family.possible = [beside](const Simulation&, const Shape& c, const Shape&) {
-    return c[0] > 0.0 && c[0] < (beside ? 1.0 : 1.5);
+  family.possible = [body](const Simulation&, const Shape& c, const Shape&) {
+    if (body == SecondBody::in_series) return c[0] > 0.8 && c[0] < 1.25;
+    return c[0] > 0.0 && c[0] < (body == SecondBody::beside ? 1.0 : 1.5);
   };
   return family;
 }
@@ -149,20 +159,29 @@ ArrayXd warmth(const Simulation& s, double t0, bool restarts) {
   return share;
 }
 
-EffectFamily self_heating(const Simulation& s, bool restarts) {
+// `bodies`: the electronics' box warms in a fraction of the time that its surroundings take.
+EffectFamily self_heating(const Simulation& s, bool restarts, int bodies) {
   EffectFamily family;
   family.effect = "self_heating";
-  family.form =
-      restarts ? "T += rise (1 - exp(-t / t0)), again after every power cut" : "T += rise (1 - exp(-t / t0))";
+  family.form = bodies == 1 ? "T += rise (1 - exp(-t / t0))"
+                            : "T += r1 (1 - exp(-t / t0)) + r2 (1 - exp(-t / (0.15 t0)))";
+  if (restarts) family.form += ", again after every power cut";
   family.grid = geometric_grid(60.0, 2.0 * s.time_s[s.time_s.size() - 1], kLagRatio);
   family.spacing = {kLagRatio};
-  family.columns = [restarts](const Simulation& at, const Shape& shape) {
-    return std::vector<Trace>{at.thermal(warmth(at, shape[0], restarts))};
+  family.columns = [=](const Simulation& at, const Shape& shape) {
+    std::vector<Trace> columns = {at.thermal(warmth(at, shape[0], restarts))};
+    if (bodies > 1) columns.push_back(at.thermal(warmth(at, kFastPart * shape[0], restarts)));
+    return columns;
   };
   family.figures = [](const Simulation&, const Shape& c, const Shape& shape) {
-    return std::vector<Figure>{{"rise", "degC", c[0]}, {"time_constant", "s", shape[0]}};
+    std::vector<Figure> figures = {{"rise", "degC", c[0]}};
+    if (c.size() > 1) figures[0].value += c[1];
+    figures.push_back({"time_constant", "s", shape[0]});
+    return figures;
   };
-  family.possible = [](const Simulation&, const Shape& c, const Shape&) { return c[0] > 0.0 && c[0] < 30.0; };
+  family.possible = [](const Simulation&, const Shape& c, const Shape&) {
+    return c[0] > 0.0 && c.back() > 0.0 && c[0] < 30.0;
+  };
   return family;
 }
 
@@ -171,11 +190,14 @@ EffectFamily self_heating(const Simulation& s, bool restarts) {
 std::vector<EffectFamily> thermal_families(const Simulation& s) {
   std::vector<EffectFamily> families;
   const bool frequency = s.telemetry->has(Output::frequency);
-  if (frequency) families.push_back(self_heating(s, false));
-  if (frequency && !s.telemetry->powered.all()) families.push_back(self_heating(s, true));
+  for (const int bodies : {1, 2}) {
+    if (frequency) families.push_back(self_heating(s, false, bodies));
+    if (frequency && !s.telemetry->powered.all()) families.push_back(self_heating(s, true, bodies));
+  }
   if (!moves(s.telemetry->case_degc, kLeastSwing_degc)) return families;
   if (frequency)
-    for (const bool beside : {false, true}) families.push_back(second_time_constant(s, beside));
+    for (const auto body : {SecondBody::in_series, SecondBody::shares_the_way, SecondBody::beside})
+      families.push_back(second_time_constant(s, body));
   if (!s.telemetry->has(Output::rate)) return families;
   families.push_back(gradient(s));
   families.push_back(gradient_of_two(s));

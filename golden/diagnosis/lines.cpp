@@ -82,6 +82,17 @@ double correlation(const VectorXd& e, const VectorXd& phase, double cycles) {
   return std::abs(sum);
 }
 
+// Scatter of the amplitude over the quarters of a recording: a line need not be steady.
+double swelling(const Eigen::MatrixX2d& wave, const VectorXd& e) {
+  Eigen::Array4d parts;
+  const Index rows = e.size() / 4;
+  for (Index k = 0; k < 4; ++k) {
+    const auto here = wave.middleRows(k * rows, rows);
+    parts[k] = (here.transpose() * here).ldlt().solve(here.transpose() * e.segment(k * rows, rows)).norm();
+  }
+  return std::sqrt((parts - parts.mean()).square().sum() / 3.0);
+}
+
 using HighPass = std::function<VectorXd(const VectorXd&)>;
 
 // Amplitude and frequency by least squares around the peak's bin, with their least deviations; `pass` is what
@@ -100,7 +111,7 @@ Line refined(const VectorXd& e, const VectorXd& phase, const Peak& peak, double 
   Line line;
   // Missing rows are zeros in e.
   line.amplitude = (wave.transpose() * wave).ldlt().solve(wave.transpose() * e).norm() * rows / valid;
-  line.amplitude_deviation = std::sqrt(2.0 * peak.level) / valid;
+  line.amplitude_deviation = std::max(std::sqrt(2.0 * peak.level) / valid, swelling(wave, e) / 2.0);
   line.frequency_hz = found.first / (rows * step_s);
   line.frequency_deviation_hz =
       std::sqrt(24.0 * peak.level) / (line.amplitude * valid * valid * kTurn_rad * step_s);

@@ -90,7 +90,10 @@ Misfit misfit_of(const TelemetryDiagnosis& d, const Windows& windows, Output out
       misfit.values += beside_baseline(h, output, remainder.fitted);
   misfit.energy.assign(windows.count(), 0.0);
   const bool coloured =
-      std::ranges::any_of(d.colours, [&](const Colour& colour) { return colour.output == output; });
+      std::ranges::any_of(d.colours, [&](const Colour& each) { return each.output == output; }) ||
+      std::ranges::any_of(d.remainders, [&](const Remainder& each) {
+        return each.output == output && each.variable.empty();
+      });
   const VectorXd white = whiten(misfit.values, blocks, noise);
   const VectorXd left = whiten(with[c], blocks, noise);
   for (std::size_t i = 0; i < blocks.size(); ++i) {

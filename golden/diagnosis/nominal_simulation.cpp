@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -55,7 +55,9 @@ ArrayXd smoothed(const ArrayXd& x, double step_s, double half_width_s) {
   const ArrayXd u = ArrayXd::LinSpaced(width, -1.0, 1.0);
   Eigen::MatrixXd powers(width, 4);
   for (Eigen::Index i = 0; i < 4; ++i) powers.col(i) = u.pow(static_cast<double>(i));
-  const Eigen::MatrixXd fit = powers.householderQr().solve(Eigen::MatrixXd::Identity(width, width));
+  // The normal equations, since four rows are wanted and not a square as wide as the window; their condition
+  // is below 200 for these powers.
+  const Eigen::MatrixXd fit = (powers.transpose() * powers).ldlt().solve(powers.transpose());
   const Eigen::VectorXd centre = fit.row(0);
   ArrayXd y(x.size());
   for (Eigen::Index i = half; i + half < x.size(); ++i)
@@ -64,6 +66,25 @@ ArrayXd smoothed(const ArrayXd& x, double step_s, double half_width_s) {
   y.tail(half) = (powers * (fit * x.tail(width).matrix())).tail(half);
   return y;
 }
+
+namespace {
+
+constexpr Eigen::Index kMedianRows = 15;
+
+ArrayXd running_median(const ArrayXd& x, Eigen::Index half) {
+  ArrayXd y(x.size());
+  std::vector<double> window;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const Eigen::Index begin = std::max<Eigen::Index>(0, i - half), end = std::min(x.size(), i + half + 1);
+    window.assign(x.data() + begin, x.data() + end);
+    const auto middle = window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
+    std::nth_element(window.begin(), middle, window.end());
+    y[i] = *middle;
+  }
+  return y;
+}
+
+}  // namespace
 
 std::array<ArrayXd, kBiasTermCount> bias_terms(const ArrayXd& f, const ArrayXd& df) {
   return {
@@ -128,6 +149,7 @@ Simulation simulate(const Telemetry& telemetry, const NominalModel& model, const
     s.temperature_degc += unsettled.restart_degc[k] * again[k].fading;
     s.smooth_degc += unsettled.restart_degc[k] * again[k].fading;
   }
+  s.smooth_amplitude = running_median(telemetry.amplitude, kMedianRows);
   s.smooth_f = model.frequency_hz.at(s.smooth_degc) - model.bias_reference_hz;
   const ArrayXd frequency = model.frequency_hz.at(s.temperature_degc);
   s.frequency_per_degc = model.frequency_hz.slope(s.temperature_degc);

@@ -60,6 +60,7 @@ struct Simulation {
   /// Thermometers without their noise and steps, smoothed over kSmoothing_s: what an effect makes of T must
   /// not carry the noise that the nominal simulation has made of it.
   Eigen::ArrayXd board_degc, smooth_case_degc, smooth_degc, smooth_f;
+  Eigen::ArrayXd smooth_amplitude;    ///< running median: without its noise, its steps where they are
   Eigen::ArrayXd f, df;               ///< frequency less the bias model's reference [Hz], [Hz/s]
   Eigen::ArrayXd frequency_per_degc;  ///< df/dT
   Eigen::ArrayXd rate_per_f, rate_per_df;

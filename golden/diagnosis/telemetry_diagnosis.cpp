@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -24,6 +25,7 @@ using Members = std::vector<Member>;
 constexpr double kTemper = 2.0;      // forms are not exact: differences count half
 constexpr double kStructure = 40.0;  // a free function of an input
 constexpr double kStructureInTime = 150.0;
+constexpr double kWander = 4.5;   // squares of an output that nobody explains, over those expected
 constexpr double kColour = 25.0;  // colour of the rate that the model does not state
 constexpr double kRecalibrate_p = 1e-6;
 constexpr double kRecalibrateTogether_p = 1e-12;
@@ -77,10 +79,24 @@ class Diagnosis {
   RowSpace space_;
 };
 
+// Steps of Gauss and Newton; one that makes things worse is taken back: where a run hardly tells the
+// parameters apart, the linear step may lead anywhere.
 void Diagnosis::relinearise(NominalModel& model, Unsettled& unsettled, const Members& members, int times) {
-  for (int i = 0; i < times; ++i) {
+  NominalModel model_before = model;
+  Unsettled unsettled_before = unsettled;
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= times; ++i) {
     const auto h = around(model, unsettled, !members.empty());
     const auto fit = members.empty() ? h->fit(members, h->expected()) : h->fit(members);
+    if (fit.minus_two_log_likelihood > before + 1.0) {
+      model = model_before;
+      unsettled = unsettled_before;
+      return;
+    }
+    if (i == times) return;
+    before = fit.minus_two_log_likelihood;
+    model_before = model;
+    unsettled_before = unsettled;
     move_parameters(h->baseline(), fit.coefficients.head(static_cast<Index>(h->baseline().size())), model,
                     unsettled);
   }
@@ -98,6 +114,33 @@ Around Diagnosis::search_from(NominalModel model, Unsettled unsettled) {
     if (std::abs(std::log(result.model.time_constant_s / tau)) < 0.005) break;
   }
   return result;
+}
+
+// Output in which a member of a fit stands out of the noise by most.
+Output main_output(Hypotheses& h, const Member& member, const HypothesisFit& fit, std::size_t i) {
+  const Reduced& columns = h.columns(member);
+  const VectorXd c = fit.coefficients.segment(fit.first[i], columns[0].cols());
+  Output main = Output::rate;
+  double most = -1.0;
+  for (const Output output : kOutputs) {
+    const std::size_t k = place(output);
+    if (h.space().rows(output) == 0) continue;
+    const auto noise = coloured_noise(fit.noise[k], h.space().block_count());
+    const double size = whiten(columns[k] * c, h.space().blocks(output), noise).squaredNorm();
+    if (size <= most) continue;
+    most = size;
+    main = output;
+  }
+  return main;
+}
+
+// Half the interval of the first figure is wider than the figure itself by this factor.
+constexpr double kUndetermined = 1.5;
+
+bool undetermined(const Explanation& entry) {
+  if (entry.figures.empty()) return false;
+  const Interval& first = entry.figures.front();
+  return 0.5 * (first.high - first.low) > kUndetermined * std::abs(first.figure.value);
 }
 
 void Diagnosis::explain(TelemetryDiagnosis& result, const SearchResult& found) {
@@ -131,15 +174,17 @@ void Diagnosis::explain(TelemetryDiagnosis& result, const SearchResult& found) {
             result.final.coefficients[result.final.first[i] + static_cast<Index>(k)] * column;
       }
     const auto disagreement = halves_disagree(h, result.members, i, result.final);
+    const Output main = main_output(h, result.members[i], result.final, i);
     const bool better = std::ranges::any_of(result.improvement, [&](const Improvement& gain) {
-      return gain.held_out_white.low > 0.0 &&
-             h.columns(result.members[i])[place(gain.output)].squaredNorm() > 0.0;
+      return gain.output == main && gain.held_out_white.low > 0.0;
     });
     if (result.members.size() > 1 && gain_beside_forms(h, result.members, result.final, i) <
                                          kWorth + EffectSearch(h).penalty(result.members[i])) {
       entry.doubt = "the others' equations may be inexact by as much";
       entry.near.clear();
-    } else if (!entry.near.empty())
+    } else if (undetermined(entry))
+      entry.doubt = "its size is not determined beside what equations may be inexact by";
+    else if (!entry.near.empty())
       entry.doubt = "other effects explain the recording as well";
     else if (!better)
       entry.doubt = "blocks left out do not become better";
@@ -201,6 +246,15 @@ double Diagnosis::remaining_share(const TelemetryDiagnosis& result, Output outpu
   return before <= 0.0 ? 0.0 : std::max(beyond(with.residual), 0.0) / before;
 }
 
+// What moves beyond the noise that is expected, and with no input.
+Remainder along_no_input(Output output, double evidence) {
+  Remainder remainder;
+  remainder.output = output;
+  remainder.evidence = evidence;
+  remainder.share = 1.0;
+  return remainder;
+}
+
 void Diagnosis::look_at_remainder(TelemetryDiagnosis& result) {
   result.remainders = remainders(*result.hypotheses, result.members, kStructure);
   for (auto& remainder : result.remainders) remainder.share = remaining_share(result, remainder.output);
@@ -208,7 +262,20 @@ void Diagnosis::look_at_remainder(TelemetryDiagnosis& result) {
   std::iota(all.begin(), all.end(), 0U);
   const Reduced forms = form_directions(*result.hypotheses, result.members, result.final, all);
   const Colour colour = colour_of(*result.hypotheses, result.members, forms, Output::rate);
-  if (colour.evidence > kColour) result.colours.push_back(colour);
+  if (colour.evidence > kColour && !colour.is_line()) result.colours.push_back(colour);
+  if (colour.evidence > kColour && colour.is_line())
+    result.remainders.push_back(along_no_input(Output::rate, colour.evidence));
+  for (const Output output : {Output::frequency, Output::drive, Output::quadrature}) {
+    const Index rows = space_.rows(output);
+    if (rows < 64) continue;
+    const std::size_t c = place(output);
+    const double expected =
+        coloured_noise(result.hypotheses->expected()[c], space_.block_count()).total_variance();
+    const double ratio = result.final.residual[c].squaredNorm() / (static_cast<double>(rows) * expected);
+    if (ratio <= kWander) continue;
+    result.remainders.push_back(along_no_input(output, static_cast<double>(rows) * (ratio - 1.0)));
+    result.remainders.back().share = remaining_share(result, output);
+  }
 }
 
 // Explanation that single rows or a line give; its own test has been passed already.
@@ -277,7 +344,8 @@ void Diagnosis::decide(TelemetryDiagnosis& result) {
     return std::ranges::any_of(result.remainders, [&](const Remainder& r) {
       // A function of time alone is what coloured noise looks like as well.
       const double least = r.variable == "time_s" ? kStructureInTime : kStructure;
-      return r.output == output && r.evidence > least && (result.members.empty() || r.share > kRemaining);
+      return r.output == output && (r.evidence > least || r.variable.empty()) &&
+             (result.members.empty() || r.share > kRemaining);
     });
   };
   // A name that leaves most of the misfit where it was is no explanation.
@@ -292,10 +360,9 @@ void Diagnosis::decide(TelemetryDiagnosis& result) {
     result.ambiguous.push_back(std::move(*entry));
     entry = result.named.erase(entry);
   }
-  const bool unknown = std::ranges::any_of(kOutputs, structured) ||
-                       std::ranges::any_of(result.colours, [](const Colour& c) { return c.is_line(); });
+  const bool unknown = std::ranges::any_of(kOutputs, structured);
   for (const auto& colour : result.colours) {
-    if (unknown || colour.is_line()) continue;
+    if (unknown) continue;
     Explanation entry;
     entry.worth = colour.evidence;
     const bool walk = colour.walk_over_flicker > 0.0;

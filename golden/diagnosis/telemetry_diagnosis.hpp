@@ -14,7 +14,7 @@
 namespace hemi::diagnosis {
 
 /// Score by which a name has to be ahead of its nearest rival.
-inline constexpr double kNameMargin = 10.0;
+inline constexpr double kNameMargin = 6.0;
 
 struct TelemetryOptions {
   Eigen::Index most_rows = 1800;  ///< blocks that every output is averaged to
