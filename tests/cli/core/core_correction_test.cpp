@@ -71,7 +71,7 @@ double rms(const VectorXd& residual) {
 double start_of(const Telemetry& t, const diagnosis::NominalModel& model) {
   double start = 0.0;
   for (int i = 0; i < 5; ++i) {
-    const auto s = diagnosis::simulate(t, model, start);
+    const auto s = diagnosis::simulate(t, model, {start, {}});
     start += (t[Output::frequency] - s.nominal[Output::frequency]).head(50).mean() /
              s.frequency_per_degc.head(50).mean();
   }
@@ -123,7 +123,7 @@ TEST_P(CoreCorrection, KeepsTheGainOnARunThatTheDiagnosisHasNotSeen) {
   const Telemetry& t = held.telemetry;
 
   const auto free_run = [&](const diagnosis::NominalModel& nominal, bool effects) {
-    const auto s = diagnosis::simulate(t, nominal, start_of(t, nominal));
+    const auto s = diagnosis::simulate(t, nominal, {start_of(t, nominal), {}});
     VectorXd residual = t[Output::rate] - s.nominal[Output::rate];
     for (const auto& entry : result.named) {
       const auto trace = diagnosis::effect_along(result, entry, s);
