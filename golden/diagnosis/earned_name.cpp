@@ -26,6 +26,7 @@ constexpr Index kInnovations = 160;
 constexpr double kNormal95 = 1.959963984540054;
 constexpr double kDetectable = 5.0;
 constexpr double kShapeStep = 0.01;
+constexpr double kFarthestForm = 0.5;
 
 // Baseline, members' columns, then what a hundredth of each shape parameter changes, per unit of its log.
 struct Extended {
@@ -195,7 +196,7 @@ std::vector<std::vector<Interval>> intervals(Hypotheses& h, const std::vector<Me
   const Extended all = extended(h, members, fit);
   std::vector<std::size_t> each(members.size());
   std::iota(each.begin(), each.end(), 0U);
-  const Reduced forms = form_directions(h, members, fit, each);
+  const Reduced forms = form_directions(h, members, fit, each, kFarthestForm);
   const MatrixXd white = whiten(h.space(), fit.noise, joined({&all.rows, &forms}));
   VectorXd prior = padded(h.prior_precision(fit.coefficients.size()), white.cols());
   prior.tail(forms[0].cols()).setOnes();

@@ -48,21 +48,30 @@ Reduced times(const Reduced& columns, const MatrixXd& by) {
 }  // namespace
 
 Reduced form_directions(Hypotheses& h, const std::vector<Member>& members, const HypothesisFit& fit,
-                        const std::vector<std::size_t>& which) {
+                        const std::vector<std::size_t>& which, double farthest) {
   const RowSpace& space = h.space();
   const MatrixXd own = whiten(space, fit.noise, h.baseline_rows());
+  const MatrixXd q = own.colPivHouseholderQr().householderQ() * MatrixXd::Identity(own.rows(), own.cols());
+  // What the baseline takes of a difference is no difference.
+  const auto beside_baseline = [&](const Reduced& columns) -> MatrixXd {
+    const MatrixXd white = whiten(space, fit.noise, columns);
+    return white - q * (q.transpose() * white);
+  };
   std::vector<Reduced> differences;
   for (const std::size_t m : which) {
     const Reduced& mine = h.columns(members[m]);
     const Reduced trace = times(mine, fit.coefficients.segment(fit.first[m], mine[0].cols()));
     const VectorXd white = whiten(space, fit.noise, trace).col(0);
+    const double size = beside_baseline(trace).norm();
     const auto forms = forms_of(h, h.families()[members[m].family].effect);
     const double prior = 1.0 / std::sqrt(static_cast<double>(forms.size()));
     for (const auto& form : forms) {
       if (form == members[m]) continue;
       const Reduced& columns = h.columns(form);
       Reduced other = times(columns, matched(own, whiten(space, fit.noise, columns), white));
-      for (std::size_t c = 0; c < other.size(); ++c) other[c] = prior * (other[c] - trace[c]);
+      for (std::size_t c = 0; c < other.size(); ++c) other[c] -= trace[c];
+      if (beside_baseline(other).norm() > farthest * size) continue;
+      for (auto& rows : other) rows *= prior;
       differences.push_back(std::move(other));
     }
   }
@@ -72,10 +81,7 @@ Reduced form_directions(Hypotheses& h, const std::vector<Member>& members, const
   std::vector<const Reduced*> parts;
   for (const auto& each : differences) parts.push_back(&each);
   const Reduced all = joined(parts);
-  // What the baseline takes of a difference is no difference.
-  MatrixXd white = whiten(space, fit.noise, all);
-  const MatrixXd q = own.colPivHouseholderQr().householderQ() * MatrixXd::Identity(own.rows(), own.cols());
-  white -= q * (q.transpose() * white);
+  const MatrixXd white = beside_baseline(all);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(white.transpose() * white);
   const Index n = axes.eigenvalues().size();
   Index count = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
+
 #include "golden/diagnosis/hypothesis.hpp"
 
 namespace hemi::diagnosis {
@@ -11,9 +13,11 @@ namespace hemi::diagnosis {
 /// above the noise by more than one deviation, as columns with a prior of one deviation; none for weak
 /// effects and for effects of a single form. A physical effect does not know our equation of it: what is
 /// named beside a strong effect, and how well the strong one's numbers are known, must not rest on its form
-/// being exact. `which`: members that are considered.
+/// being exact. `which`: members that are considered; `farthest`: forms whose difference is
+/// larger than this share of the trace are none that could be meant.
 Reduced form_directions(Hypotheses& hypotheses, const std::vector<Member>& members, const HypothesisFit& fit,
-                        const std::vector<std::size_t>& which);
+                        const std::vector<std::size_t>& which,
+                        double farthest = std::numeric_limits<double>::infinity());
 
 /// What a member gains beside all other members and by what these may differ from their forms.
 double gain_beside_forms(Hypotheses& hypotheses, const std::vector<Member>& members, const HypothesisFit& fit,
