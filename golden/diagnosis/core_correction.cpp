@@ -23,24 +23,6 @@ double variation(const ArrayXd& y) {
   return (y - y.mean()).square().sum();
 }
 
-ArrayXd bias(const NominalModel& model, const ArrayXd& f, const ArrayXd& df) {
-  const auto terms = bias_terms(f, df);
-  ArrayXd sum = ArrayXd::Zero(f.size());
-  for (std::size_t i = 0; i < kBiasTermCount; ++i) sum += model.bias_dph[i] * terms[i];
-  return sum;
-}
-
-// The series `seconds` ago, straight lines between rows.
-ArrayXd ago(const ArrayXd& x, double rows) {
-  ArrayXd y(x.size());
-  for (Index i = 0; i < x.size(); ++i) {
-    const double at = std::max(static_cast<double>(i) - rows, 0.0);
-    const auto before = std::min(static_cast<Index>(at), x.size() - 2);
-    y[i] = x[before] + (at - static_cast<double>(before)) * (x[before + 1] - x[before]);
-  }
-  return y;
-}
-
 // One in some of the powered rows, for speed.
 std::vector<Index> chosen_rows(const Telemetry& t) {
   const Index stride = std::max<Index>(1, t.rows() / kMostRows);
@@ -48,13 +30,6 @@ std::vector<Index> chosen_rows(const Telemetry& t) {
   for (Index i = 0; i < t.rows(); i += stride)
     if (t.powered[i]) rows.push_back(i);
   return rows;
-}
-
-double median(const VectorXd& values) {
-  std::vector<double> sorted(values.data(), values.data() + values.size());
-  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), at, sorted.end());
-  return *at;
 }
 
 // The recording's temperatures and nothing else; outputs as the corrected model has them, since effects may
@@ -133,8 +108,8 @@ class Core {
   // Which effects go in, a bit each: those with which the whole change of the rate, parameters and effects,
   // is predicted best where it was left out. What the bias took from an effect comes back with it alone.
   std::size_t correct_rate(NominalModel& model) const {
-    const auto now = bias(result_.corrected, s_.smooth_f, slope_in_time(s_.smooth_f, telemetry_.step_s));
-    const ArrayXd moved = now - bias(given_, s_.smooth_f, slope_late(s_.smooth_f));
+    const auto now = bias_dph(result_.corrected, s_.smooth_f, slope_in_time(s_.smooth_f, telemetry_.step_s));
+    const ArrayXd moved = now - bias_dph(given_, s_.smooth_f, slope_late(s_.smooth_f));
     std::vector<VectorXd> left;
     VectorXd whole = moved(rows_);
     for (const auto& trace : traces_) whole += left.emplace_back(left_of(trace)(rows_));
@@ -161,7 +136,7 @@ class Core {
     return best;
   }
 
-  ArrayXd slope_late(const ArrayXd& f) const { return ago(slope_in_time(f, telemetry_.step_s), late_rows_); }
+  ArrayXd slope_late(const ArrayXd& f) const { return late(slope_in_time(f, telemetry_.step_s), late_rows_); }
 
   // What an effect does to the rate beyond what the core takes off with the frequency that it counts.
   ArrayXd left_of(const Trace& trace) const {
@@ -169,8 +144,8 @@ class Core {
     if (trace[Output::rate].size() > 0) left += trace[Output::rate].array();
     if (trace[Output::frequency].size() == 0) return left;
     const ArrayXd moved = s_.smooth_f + trace[Output::frequency].array();
-    return left - bias(result_.corrected, moved, slope_late(moved)) +
-           bias(result_.corrected, s_.smooth_f, slope_late(s_.smooth_f));
+    return left - bias_dph(result_.corrected, moved, slope_late(moved)) +
+           bias_dph(result_.corrected, s_.smooth_f, slope_late(s_.smooth_f));
   }
 
   CoreShare share_of(const std::string& effect, const Trace& trace) const {

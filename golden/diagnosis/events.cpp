@@ -14,13 +14,6 @@ constexpr double kOutstanding = 20.0;
 constexpr double kWhole = 0.1;
 constexpr Index kNeighbours = 4;
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // What stands out of the median of the rows around.
 VectorXd standing_out(const VectorXd& e) {
   VectorXd out = VectorXd::Constant(e.size(), std::numeric_limits<double>::quiet_NaN());
@@ -34,10 +27,10 @@ VectorXd standing_out(const VectorXd& e) {
 }
 
 double deviation(const VectorXd& values) {
-  std::vector<double> sizes;
+  std::vector<double> present;
   for (const double v : values)
-    if (!std::isnan(v)) sizes.push_back(std::abs(v));
-  return median(std::move(sizes)) / 0.674489750196082;
+    if (!std::isnan(v)) present.push_back(v);
+  return robust_deviation(std::move(present));
 }
 
 bool repeats_before(const Telemetry& t, Index i) {

@@ -103,12 +103,6 @@ bool usable(const NominalModel& model, double low_degc, double high_degc) {
   return model.drive_v.coefficients.empty() || (model.drive_v.at(degc) > 0.0).all();
 }
 
-double median(VectorXd values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 VectorXd straight(const std::vector<Corner>& corners, const ArrayXd& time_s) {
   VectorXd values(time_s.size());
   std::size_t leg = 0;

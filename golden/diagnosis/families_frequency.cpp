@@ -143,13 +143,6 @@ EffectFamily loop_lag(const Simulation& s, int poles) {
   return family;
 }
 
-double median(const Eigen::VectorXd& values) {
-  std::vector<double> sorted(values.data(), values.data() + values.size());
-  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), at, sorted.end());
-  return *at;
-}
-
 }  // namespace
 
 std::vector<EffectFamily> frequency_families(const Simulation& s) {

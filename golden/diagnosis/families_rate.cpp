@@ -117,28 +117,14 @@ void add_attitude(std::vector<EffectFamily>& families) {
   };
 }
 
-// The channel n samples ago, a straight line between samples.
-ArrayXd late(const ArrayXd& x, double n) {
-  ArrayXd y(x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double at = std::max(static_cast<double>(i) - n, 0.0);
-    const auto before = std::min(static_cast<Eigen::Index>(at), x.size() - 2);
-    const double share = at - static_cast<double>(before);
-    y[i] = (1.0 - share) * x[before] + share * x[before + 1];
-  }
-  return y;
-}
-
 // The nominal output without the thermometer's noise, which a delay would move against itself.
 ArrayXd smooth_nominal(const Simulation& s, Output output) {
   if (output == Output::frequency) return s.smooth_f;
   if (output == Output::drive) return s.smooth_amplitude * s.model.drive_v.at(s.smooth_degc);
   if (output == Output::quadrature)
     return s.smooth_amplitude * s.model.quadrature_v.at(s.smooth_degc) + s.telemetry->trim_v.array();
-  const auto terms = bias_terms(s.smooth_f, slope_in_time(s.smooth_f, s.telemetry->step_s));
-  ArrayXd rate = s.model.scale_factor * s.telemetry->rate_in_dph.array();
-  for (std::size_t i = 0; i < kBiasTermCount; ++i) rate += s.model.bias_dph[i] * terms[i];
-  return rate;
+  return s.model.scale_factor * s.telemetry->rate_in_dph.array() +
+         bias_dph(s.model, s.smooth_f, slope_in_time(s.smooth_f, s.telemetry->step_s));
 }
 
 EffectFamily time_shift(Output output) {

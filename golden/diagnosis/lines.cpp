@@ -25,12 +25,6 @@ constexpr double kLeastMove_hz = 0.5;
 constexpr int kBits = 20;
 constexpr Index kStartRows = 60;
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 struct Peak {
   double ratio = 0.0;  // power over the local median's mean
   Index bin = 0;
@@ -53,7 +47,7 @@ Peak highest(const VectorXd& e, const VectorXd& phase) {
     const Index count = std::min(kMedianBins, bins - begin);
     if (count < 20) break;
     const VectorXd part = power.segment(begin, count);
-    const double level = median({part.begin(), part.end()}) / std::numbers::ln2;
+    const double level = median(part) / std::numbers::ln2;
     Index at = 0;
     const double top = part.maxCoeff(&at);
     if (level > 0.0 && top / level > best.ratio) best = {top / level, begin + at, level};

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -24,83 +23,27 @@ ArrayXd Polynomial::slope(const ArrayXd& x) const {
   return sum;
 }
 
-ArrayXd lag(const ArrayXd& x, double step_s, double tau_s, double start) {
-  if (tau_s <= 0.0) return x;
-  const double gain = -std::expm1(-step_s / tau_s);
-  ArrayXd y(x.size());
-  double state = start;
-  if (x.size() > 0) y[0] = state;
-  for (Eigen::Index i = 1; i < x.size(); ++i) y[i] = state += gain * (x[i] - state);
-  return y;
-}
-
-double span(const ArrayXd& x) {
-  return x.size() == 0 ? 0.0 : x.maxCoeff() - x.minCoeff();
-}
-
-ArrayXd slope_in_time(const ArrayXd& x, double step_s) {
-  const Eigen::Index n = x.size();
-  ArrayXd slope = ArrayXd::Zero(n);
-  if (n < 2) return slope;
-  slope.segment(1, n - 2) = (x.tail(n - 2) - x.head(n - 2)) / (2.0 * step_s);
-  slope[0] = (x[1] - x[0]) / step_s;
-  slope[n - 1] = (x[n - 1] - x[n - 2]) / step_s;
-  return slope;
-}
-
-ArrayXd smoothed(const ArrayXd& x, double step_s, double half_width_s) {
-  const auto half = std::min(static_cast<Eigen::Index>(half_width_s / step_s), (x.size() - 1) / 2);
-  if (half < 2) return x;
-  const Eigen::Index width = 2 * half + 1;
-  const ArrayXd u = ArrayXd::LinSpaced(width, -1.0, 1.0);
-  Eigen::MatrixXd powers(width, 4);
-  for (Eigen::Index i = 0; i < 4; ++i) powers.col(i) = u.pow(static_cast<double>(i));
-  // The normal equations, since four rows are wanted and not a square as wide as the window; their condition
-  // is below 200 for these powers.
-  const Eigen::MatrixXd fit = (powers.transpose() * powers).ldlt().solve(powers.transpose());
-  const Eigen::VectorXd centre = fit.row(0);
-  ArrayXd y(x.size());
-  for (Eigen::Index i = half; i + half < x.size(); ++i)
-    y[i] = centre.dot(x.segment(i - half, width).matrix());
-  y.head(half) = (powers * (fit * x.head(width).matrix())).head(half);
-  y.tail(half) = (powers * (fit * x.tail(width).matrix())).tail(half);
-  return y;
-}
-
-namespace {
-
-constexpr Eigen::Index kMedianRows = 15;
-
-ArrayXd running_median(const ArrayXd& x, Eigen::Index half) {
-  ArrayXd y(x.size());
-  std::vector<double> window;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const Eigen::Index begin = std::max<Eigen::Index>(0, i - half), end = std::min(x.size(), i + half + 1);
-    window.assign(x.data() + begin, x.data() + end);
-    const auto middle = window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
-    std::nth_element(window.begin(), middle, window.end());
-    y[i] = *middle;
-  }
-  return y;
-}
-
-}  // namespace
-
 std::array<ArrayXd, kBiasTermCount> bias_terms(const ArrayXd& f, const ArrayXd& df) {
   return {
       ArrayXd::Ones(f.size()), f, f.square(), f.cube(), df, df.square(), df.cube(), f * df, f.square() * df,
       f * df.square()};
 }
 
+ArrayXd bias_dph(const NominalModel& model, const ArrayXd& f, const ArrayXd& df) {
+  const auto terms = bias_terms(f, df);
+  ArrayXd sum = ArrayXd::Zero(f.size());
+  for (std::size_t i = 0; i < kBiasTermCount; ++i) sum += model.bias_dph[i] * terms[i];
+  return sum;
+}
+
 namespace {
+
+constexpr Eigen::Index kMedianRows = 15;
 
 void fill_rate(Simulation& s) {
   const auto& b = s.model.bias_dph;
-  const auto terms = bias_terms(s.f, s.df);
-  ArrayXd rate = s.model.scale_factor * s.telemetry->rate_in_dph.array();
-  for (std::size_t i = 0; i < kBiasTermCount; ++i)
-    if (b[i] != 0.0) rate += b[i] * terms[i];
-  s.nominal[Output::rate] = rate;
+  s.nominal[Output::rate] =
+      s.model.scale_factor * s.telemetry->rate_in_dph.array() + bias_dph(s.model, s.f, s.df);
   s.rate_per_f = b[1] + 2.0 * b[2] * s.f + 3.0 * b[3] * s.f.square() + b[7] * s.df + 2.0 * b[8] * s.f * s.df +
                  b[9] * s.df.square();
   s.rate_per_df = b[4] + 2.0 * b[5] * s.df + 3.0 * b[6] * s.df.square() + b[7] * s.f + b[8] * s.f.square() +

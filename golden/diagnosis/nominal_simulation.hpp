@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "golden/diagnosis/series.hpp"
 #include "golden/diagnosis/telemetry.hpp"
 
 namespace hemi::diagnosis {
@@ -16,22 +17,11 @@ struct Trace {
   const Eigen::VectorXd& operator[](Output output) const { return outputs[place(output)]; }
 };
 
-/// First-order lag of the recording format: y[0] = start, y[i] = y[i-1] + (1 - exp(-step / tau)) (x[i] -
-/// y[i-1]); tau <= 0: x itself.
-Eigen::ArrayXd lag(const Eigen::ArrayXd& x, double step_s, double tau_s, double start);
-
-/// Largest less smallest value; zero of nothing.
-double span(const Eigen::ArrayXd& x);
-
-/// Central differences over the step, one-sided at the ends.
-Eigen::ArrayXd slope_in_time(const Eigen::ArrayXd& x, double step_s);
-
-/// Local cubics by least squares over +-half_width_s (Savitzky and Golay, Analytical Chemistry 36 (1964)
-/// 1627), the outermost windows' cubics at the ends: takes a thermometer's steps off what moves slowly.
-Eigen::ArrayXd smoothed(const Eigen::ArrayXd& x, double step_s, double half_width_s);
-
 /// The ten terms of the bias model over f (already less its reference) and df, in their order.
 std::array<Eigen::ArrayXd, kBiasTermCount> bias_terms(const Eigen::ArrayXd& f, const Eigen::ArrayXd& df);
+
+/// What the model's bias makes of them [deg/h].
+Eigen::ArrayXd bias_dph(const NominalModel& model, const Eigen::ArrayXd& f, const Eigen::ArrayXd& df);
 
 /// Where the resonator is when rows begin, which the case does not tell.
 struct Unsettled {

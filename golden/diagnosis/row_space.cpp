@@ -13,15 +13,6 @@ using Eigen::VectorXd;
 // One-sided density h^2 / f between processes a factor 6 apart in time: h^2 ln 6 each.
 constexpr double kFlickerPerProcess = 1.791759469228055;
 
-// Standard deviation of Gaussian noise from the median of |x|.
-double robust_deviation(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  for (double& value : values) value = std::abs(value);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle / 0.674489750196082;
-}
-
 }  // namespace
 
 RowSpace::RowSpace(const Telemetry& telemetry, Index most_rows) {
