@@ -10,6 +10,7 @@
 
 #include "golden/diagnosis/effect_search.hpp"
 #include "golden/diagnosis/form_error.hpp"
+#include "golden/diagnosis/scaled_normal.hpp"
 
 namespace hemi::diagnosis {
 namespace {
@@ -59,28 +60,6 @@ Extended extended(Hypotheses& h, const std::vector<Member>& members, const Hypot
   result.rows = joined(parts);
   return result;
 }
-
-// Least squares on some rows of whitened columns.
-class Solver {
- public:
-  Solver(const MatrixXd& white, const VectorXd& prior)
-      : scale_(white.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse()) {
-    normal_ = scale_.asDiagonal() * (white.transpose() * white) * scale_.asDiagonal();
-    normal_.diagonal() += scale_.cwiseAbs2().cwiseProduct(prior);
-    normal_.diagonal().array() += 1e-12;
-  }
-  VectorXd solve(const VectorXd& right) const {
-    return scale_.asDiagonal() * normal_.ldlt().solve(scale_.asDiagonal() * right);
-  }
-  MatrixXd covariance() const {
-    return scale_.asDiagonal() * normal_.ldlt().solve(MatrixXd::Identity(scale_.size(), scale_.size())) *
-           scale_.asDiagonal();
-  }
-
- private:
-  VectorXd scale_;
-  MatrixXd normal_;
-};
 
 VectorXd padded(const VectorXd& prior, Index size) {
   VectorXd result = VectorXd::Zero(size);
@@ -138,7 +117,8 @@ LeftOut left_out(const Hypotheses& h, const Reduced& all, const Noise& noise, co
     const auto kept = rows_where(numbers, [&](Index block) { return fold_of(space, block) != fold; });
     const auto out = rows_where(numbers, [&](Index block) { return fold_of(space, block) == fold; });
     const MatrixXd rest = white(kept, Eigen::all);
-    const VectorXd c = Solver(rest, VectorXd::Zero(rest.cols())).solve(rest.transpose() * VectorXd(y(kept)));
+    const VectorXd c =
+        ScaledNormal(rest, VectorXd::Zero(rest.cols())).solve(rest.transpose() * VectorXd(y(kept)));
     result.white(out) -= white(out, Eigen::all) * c;
     for (const Output output : kOutputs) {
       const std::size_t k = place(output);
@@ -200,7 +180,7 @@ std::vector<std::vector<Interval>> intervals(Hypotheses& h, const std::vector<Me
   const MatrixXd white = whiten(h.space(), fit.noise, joined({&all.rows, &forms}));
   VectorXd prior = padded(h.prior_precision(fit.coefficients.size()), white.cols());
   prior.tail(forms[0].cols()).setOnes();
-  const MatrixXd covariance = Solver(white, prior).covariance();
+  const MatrixXd covariance = ScaledNormal(white, prior).covariance();
   std::vector<std::vector<Interval>> list;
   for (std::size_t m = 0; m < members.size(); ++m) {
     const auto& family = h.families()[members[m].family];
@@ -254,7 +234,7 @@ std::optional<double> halves_disagree(Hypotheses& h, const std::vector<Member>& 
   for (const bool early : {true, false}) {
     const auto kept = rows_where(numbers, [&](Index block) { return (block < half) == early; });
     const MatrixXd rows = white(kept, Eigen::all);
-    const Solver solver(rows, h.prior_precision(white.cols()));
+    const ScaledNormal solver(rows, h.prior_precision(white.cols()));
     const VectorXd all = solver.solve(rows.transpose() * VectorXd(y(kept)));
     c[early ? 0 : 1] = all.segment(first, count);
     covariance[early ? 0 : 1] = solver.covariance().block(first, first, count, count);
@@ -310,7 +290,7 @@ Decoys decoys(Hypotheses& h, const std::vector<Member>& members, const Hypothesi
   std::mt19937_64 random(seed);
   const MatrixXd own = whiten(h.space(), fit.noise, h.design(members));
   const VectorXd y = whiten(h.space(), fit.noise, h.data());
-  const Solver solver(own, h.prior_precision(own.cols()));
+  const ScaledNormal solver(own, h.prior_precision(own.cols()));
   const VectorXd residual = y - own * solver.solve(own.transpose() * y);
   for (std::size_t f = 0; f < h.families().size(); ++f) {
     const Member member{f, h.families()[f].grid[h.families()[f].grid.size() / 2]};

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "golden/diagnosis/effect_search.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "golden/diagnosis/scaled_normal.hpp"
 
 namespace hemi::diagnosis {
 namespace {
@@ -22,27 +23,19 @@ constexpr std::size_t kMostEffects = 4;
 constexpr std::size_t kSingleProposals = 6;
 constexpr std::size_t kPairProposals = 3;
 constexpr int kRefinements = 5;
+constexpr double kShared = 1e-9;  // ridge: columns of one effect may all but coincide
 
 // Takes off what `set` explains. A column that keeps less than 1e-9 of itself is part of the set.
 void take_off(const MatrixXd& set, const VectorXd& prior, MatrixXd& columns) {
-  const VectorXd scale = set.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
-  MatrixXd normal = scale.asDiagonal() * (set.transpose() * set) * scale.asDiagonal();
-  normal.diagonal() += scale.cwiseAbs2().cwiseProduct(prior);
-  normal.diagonal().array() += 1e-12;
   const VectorXd before = columns.colwise().norm();
-  const MatrixXd shares =
-      scale.asDiagonal() * normal.ldlt().solve(scale.asDiagonal() * (set.transpose() * columns));
-  columns -= set * shares;
+  columns -= set * ScaledNormal(set, prior).solve(set.transpose() * columns);
   for (Index j = 0; j < columns.cols(); ++j)
     if (columns.col(j).norm() < 1e-6 * before[j]) columns.col(j).setZero();
 }
 
 // Coefficients of a set of columns given by products.
 VectorXd solved(const MatrixXd& products, const VectorXd& with_data) {
-  const VectorXd size = products.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  MatrixXd normal = size.asDiagonal() * products * size.asDiagonal();
-  normal.diagonal().array() += 1e-9;
-  return size.asDiagonal() * normal.ldlt().solve(size.asDiagonal() * with_data);
+  return ScaledNormal::of_products(products, kShared).solve(with_data);
 }
 
 // e' C (C'C)^-1 C' e over them.

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "golden/diagnosis/form_error.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include "golden/diagnosis/scaled_normal.hpp"
 
 namespace hemi::diagnosis {
 namespace {
@@ -32,11 +33,9 @@ std::vector<Member> forms_of(const Hypotheses& h, const std::string& effect) {
 VectorXd matched(const MatrixXd& own, const MatrixXd& columns, const VectorXd& trace) {
   MatrixXd all(own.rows(), own.cols() + columns.cols());
   all << own, columns;
-  const VectorXd scale = all.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
-  MatrixXd normal = scale.asDiagonal() * (all.transpose() * all) * scale.asDiagonal();
-  normal.diagonal().array() += 1e-9;
-  const VectorXd c = scale.asDiagonal() * normal.ldlt().solve(scale.asDiagonal() * (all.transpose() * trace));
-  return c.tail(columns.cols());
+  return ScaledNormal(all, VectorXd::Zero(all.cols()), 1e-9)
+      .solve(all.transpose() * trace)
+      .bottomRows(columns.cols());
 }
 
 Reduced times(const Reduced& columns, const MatrixXd& by) {
@@ -106,16 +105,12 @@ double gain_beside_forms(Hypotheses& h, const std::vector<Member>& members, cons
   prior.head(known) = h.prior_precision(known);
   const Reduced& mine = h.columns(members[which]);
   MatrixXd columns = whiten(h.space(), fit.noise, joined({&mine, &h.data()}));
-  const VectorXd scale = own.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
-  MatrixXd normal = scale.asDiagonal() * (own.transpose() * own) * scale.asDiagonal();
-  normal.diagonal() += scale.cwiseAbs2().cwiseProduct(prior);
-  normal.diagonal().array() += 1e-12;
-  const MatrixXd right = scale.asDiagonal() * (own.transpose() * columns);
-  MatrixXd left = columns.transpose() * columns - right.transpose() * normal.ldlt().solve(right);
+  const MatrixXd right = own.transpose() * columns;
+  const MatrixXd left =
+      columns.transpose() * columns - right.transpose() * ScaledNormal(own, prior).solve(right);
   const Index n = mine[0].cols();
-  left.diagonal().head(n) *= 1.0 + 1e-9;
   const VectorXd with_data = left.col(n).head(n);
-  return with_data.dot(left.topLeftCorner(n, n).ldlt().solve(with_data));
+  return with_data.dot(VectorXd(ScaledNormal::of_products(left.topLeftCorner(n, n), 1e-9).solve(with_data)));
 }
 
 }  // namespace hemi::diagnosis

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "golden/diagnosis/hypothesis.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <cmath>
+
+#include "golden/diagnosis/scaled_normal.hpp"
 
 namespace hemi::diagnosis {
 namespace {
@@ -123,13 +124,9 @@ HypothesisFit Hypotheses::fit(const std::vector<Member>& members, const Noise& n
   }
   const MatrixXd white = whiten(space_, noise, x);
   const VectorXd y = whiten(space_, noise, data_);
-  const VectorXd scale = white.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
-  MatrixXd normal = scale.asDiagonal() * (white.transpose() * white) * scale.asDiagonal();
-  normal.diagonal() += scale.cwiseAbs2().cwiseProduct(prior_precision(next));
-  normal.diagonal().array() += 1e-12;  // columns that say the same share what they explain
-  const Eigen::LDLT<MatrixXd> solver(normal);
-  result.coefficients = scale.asDiagonal() * solver.solve(scale.asDiagonal() * (white.transpose() * y));
-  result.covariance = scale.asDiagonal() * solver.solve(MatrixXd::Identity(next, next)) * scale.asDiagonal();
+  const ScaledNormal solver(white, prior_precision(next));
+  result.coefficients = solver.solve(white.transpose() * y);
+  result.covariance = solver.covariance();
   result.squares = (y - white * result.coefficients).squaredNorm();
   result.minus_two_log_likelihood =
       result.squares + (prior_precision(next).array() * result.coefficients.array().square()).sum();

@@ -7,6 +7,8 @@
 #include <limits>
 #include <map>
 
+#include "golden/diagnosis/scaled_normal.hpp"
+
 namespace hemi::diagnosis {
 namespace {
 
@@ -151,11 +153,8 @@ void Comparison::take_off(MatrixXd& columns) const {
 
 // Infinite where the physics cannot have the strength that fits best.
 double Comparison::left_by(const MatrixXd& columns, const Member& member, const VectorXd& truth) const {
-  const VectorXd size = columns.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
-  MatrixXd normal = size.asDiagonal() * (columns.transpose() * columns) * size.asDiagonal();
-  normal.diagonal().array() += 1e-9;
   const VectorXd c =
-      size.asDiagonal() * normal.ldlt().solve(size.asDiagonal() * (columns.transpose() * truth));
+      ScaledNormal(columns, VectorXd::Zero(columns.cols()), 1e-9).solve(columns.transpose() * truth);
   const auto& family = hypotheses_->families()[member.family];
   if (family.possible && !family.possible(hypotheses_->simulation(), {c.begin(), c.end()}, member.shape))
     return std::numeric_limits<double>::infinity();
