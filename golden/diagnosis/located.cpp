@@ -65,29 +65,41 @@ class Windows {
   std::size_t count_;
 };
 
+// Under the noise that is expected: residuals of doing without and of the diagnosis's members, and what the
+// baseline spans.
+struct UnderExpected {
+  explicit UnderExpected(const TelemetryDiagnosis& d)
+      : baseline(d.hypotheses->fit({}, d.hypotheses->expected()).residual),
+        members(d.hypotheses->fit(d.members, d.hypotheses->expected()).residual),
+        own(whiten(d.hypotheses->space(), d.hypotheses->expected(), d.hypotheses->baseline_rows())) {}
+
+  Reduced baseline, members;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> own;
+};
+
 // A column of one output less what the baseline takes of it.
-VectorXd beside_baseline(Hypotheses& h, Output output, const VectorXd& column) {
+VectorXd beside_baseline(const Hypotheses& h, const UnderExpected& fits, Output output,
+                         const VectorXd& column) {
   const std::size_t c = place(output);
   Reduced alone;
   for (const Output each : kOutputs) alone[place(each)] = Eigen::MatrixXd::Zero(h.space().rows(each), 1);
   alone[c].col(0) = column;
-  const Eigen::MatrixXd own = whiten(h.space(), h.expected(), h.baseline_rows());
   const VectorXd white = whiten(h.space(), h.expected(), alone).col(0);
-  return column - h.baseline_rows()[c] * own.colPivHouseholderQr().solve(white);
+  return column - h.baseline_rows()[c] * fits.own.solve(white);
 }
 
 // What effects and free functions take off beside the baseline, colour beyond the stated one, and slips.
-Misfit misfit_of(const TelemetryDiagnosis& d, const Windows& windows, Output output) {
+Misfit misfit_of(const TelemetryDiagnosis& d, const Windows& windows, const UnderExpected& fits,
+                 Output output) {
   const std::size_t c = place(output);
-  Hypotheses& h = *d.hypotheses;
+  const Hypotheses& h = *d.hypotheses;
   const auto& blocks = h.space().blocks(output);
   const auto noise = coloured_noise(h.expected()[c], h.space().block_count());
-  const Reduced with = h.fit(d.members, h.expected()).residual;
   Misfit misfit;
-  misfit.values = h.fit({}, h.expected()).residual[c].col(0) - with[c].col(0);
+  misfit.values = fits.baseline[c].col(0) - fits.members[c].col(0);
   for (const auto& remainder : d.remainders)
     if (remainder.output == output && remainder.fitted.size() == misfit.values.size())
-      misfit.values += beside_baseline(h, output, remainder.fitted);
+      misfit.values += beside_baseline(h, fits, output, remainder.fitted);
   misfit.energy.assign(windows.count(), 0.0);
   const bool coloured =
       std::ranges::any_of(d.colours, [&](const Colour& each) { return each.output == output; }) ||
@@ -95,14 +107,14 @@ Misfit misfit_of(const TelemetryDiagnosis& d, const Windows& windows, Output out
         return each.output == output && each.variable.empty();
       });
   const VectorXd white = whiten(misfit.values, blocks, noise);
-  const VectorXd left = whiten(with[c], blocks, noise);
+  const VectorXd left = whiten(fits.members[c], blocks, noise);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const auto k = static_cast<Index>(i);
     misfit.energy[windows.of_block(blocks[i])] +=
         white[k] * white[k] + (coloured ? left[k] * left[k] - 1.0 : 0.0);
   }
   for (double& energy : misfit.energy) energy = std::max(energy, 0.0);
-  if (coloured) misfit.values += with[c].col(0);
+  if (coloured) misfit.values += fits.members[c].col(0);
   if (output == Output::frequency) {
     // A pulse of one turn within one row.
     const double row = h.expected()[c].white * static_cast<double>(h.space().block_rows());
@@ -154,10 +166,6 @@ void add_band(Located& entry, const VectorXd& values, double block_s) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 Located slow(const TelemetryDiagnosis& d, const Windows& windows, Output output, const Misfit& misfit) {
   Located entry;
   entry.output = output;
@@ -198,10 +206,11 @@ Located fast(const TelemetryDiagnosis& d, const Line& line) {
 std::vector<Located> locate(const TelemetryDiagnosis& d) {
   std::vector<Located> list;
   const Windows windows(d);
+  const UnderExpected fits(d);
   double whole = 0.0;
   for (const Output output : kOutputs) {
     if (d.hypotheses->space().rows(output) < 16) continue;
-    const Misfit misfit = misfit_of(d, windows, output);
+    const Misfit misfit = misfit_of(d, windows, fits, output);
     if (misfit.whole() > 0.0) list.push_back(slow(d, windows, output, misfit));
   }
   for (const auto& line : d.lines) list.push_back(fast(d, line));
