@@ -69,11 +69,10 @@ std::vector<AlternativeSet> alternative_sets(const TelemetryDiagnosis& diagnosis
   std::vector<AlternativeSet> sets;
   Hypotheses& h = *diagnosis.hypotheses;
   for (const auto& entry : diagnosis.ambiguous) {
-    const auto own = std::ranges::find_if(diagnosis.members, [&](const Member& member) {
-      const auto& family = h.families()[member.family];
-      return family.effect == entry.effect && family.form == entry.form;
-    });
-    if (own == diagnosis.members.end() || entry.near.empty()) continue;
+    const auto family = family_of(h.families(), entry.effect, entry.form);
+    if (!family || entry.near.empty()) continue;
+    const auto own = std::ranges::find(diagnosis.members, *family, &Member::family);
+    if (own == diagnosis.members.end()) continue;
     const auto place = static_cast<std::size_t>(own - diagnosis.members.begin());
     std::vector<Member> others = diagnosis.members;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(place));
@@ -96,12 +95,10 @@ std::vector<AlternativeSet> alternative_sets(const TelemetryDiagnosis& diagnosis
 
 std::optional<CarriedEffect> carried_over(const FittedEffect& effect, const Simulation& from,
                                           const Simulation& to, const std::vector<EffectFamily>& families) {
-  const auto family = std::ranges::find_if(families, [&](const EffectFamily& each) {
-    return each.effect == effect.effect && each.form == effect.form;
-  });
-  if (family == families.end()) return std::nullopt;
+  const auto family = family_of(families, effect.effect, effect.form);
+  if (!family) return std::nullopt;
   CarriedEffect carried;
-  carried.member = {static_cast<std::size_t>(family - families.begin()), effect.shape};
+  carried.member = {*family, effect.shape};
   carried.coefficients =
       VectorXd::Map(effect.coefficients.data(), static_cast<Index>(effect.coefficients.size()));
   auto& shape = carried.member.shape;

@@ -212,26 +212,15 @@ CoreCorrection core_correction(const TelemetryDiagnosis& result, const NominalMo
 }
 
 Trace effect_along(const TelemetryDiagnosis& result, const Explanation& effect, const Simulation& other) {
-  const auto same = [&](const EffectFamily& family) {
-    return family.effect == effect.effect && family.form == effect.form;
-  };
-  const auto& families = result.hypotheses->families();
-  const auto member =
-      std::ranges::find_if(result.members, [&](const Member& each) { return same(families[each.family]); });
-  const auto there = effect_families(other);
-  const auto family = std::ranges::find_if(there, same);
-  Trace sum;
-  if (member == result.members.end() || family == there.end()) return sum;
-  Index k = result.final.first[static_cast<std::size_t>(member - result.members.begin())];
-  for (const Trace& column : family->columns(other, member->shape)) {
-    const double strength = result.final.coefficients[k++];
-    for (const Output output : kOutputs) {
-      if (column[output].size() == 0) continue;
-      if (sum[output].size() == 0) sum[output] = VectorXd::Zero(column[output].size());
-      sum[output] += strength * column[output];
-    }
-  }
-  return sum;
+  const auto here = family_of(result.hypotheses->families(), effect.effect, effect.form);
+  const auto families = effect_families(other);
+  const auto there = family_of(families, effect.effect, effect.form);
+  if (!here || !there) return {};
+  const auto member = std::ranges::find(result.members, *here, &Member::family);
+  if (member == result.members.end()) return {};
+  const auto columns = families[*there].columns(other, member->shape);
+  const Index first = result.final.first[static_cast<std::size_t>(member - result.members.begin())];
+  return summed(columns, result.final.coefficients.segment(first, static_cast<Index>(columns.size())));
 }
 
 VectorXd corrected_rate(const TelemetryDiagnosis& result) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,10 @@ std::vector<EffectFamily> frequency_families(const Simulation& simulation);
 std::vector<EffectFamily> command_families(const Simulation& simulation);
 std::vector<EffectFamily> rate_families(const Simulation& simulation);
 std::vector<EffectFamily> effect_families(const Simulation& simulation);
+
+/// Place of the family of an effect in one form; nothing where this recording cannot show it.
+std::optional<std::size_t> family_of(const std::vector<EffectFamily>& families, const std::string& effect,
+                                     const std::string& form);
 
 /// Whether an input moves by more than `least` over the recording.
 bool moves(const Eigen::VectorXd& input, double least);

@@ -23,6 +23,18 @@ ArrayXd Polynomial::slope(const ArrayXd& x) const {
   return sum;
 }
 
+Trace summed(const std::vector<Trace>& columns, const Eigen::VectorXd& coefficients) {
+  Trace sum;
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    for (const Output output : kOutputs) {
+      const auto& column = columns[k][output];
+      if (column.size() == 0) continue;
+      if (sum[output].size() == 0) sum[output] = Eigen::VectorXd::Zero(column.size());
+      sum[output] += coefficients[static_cast<Eigen::Index>(k)] * column;
+    }
+  return sum;
+}
+
 std::array<ArrayXd, kBiasTermCount> bias_terms(const ArrayXd& f, const ArrayXd& df) {
   return {
       ArrayXd::Ones(f.size()), f, f.square(), f.cube(), df, df.square(), df.cube(), f * df, f.square() * df,

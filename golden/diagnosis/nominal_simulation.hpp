@@ -17,6 +17,9 @@ struct Trace {
   const Eigen::VectorXd& operator[](Output output) const { return outputs[place(output)]; }
 };
 
+/// sum_i c_i columns_i, empty where all are.
+Trace summed(const std::vector<Trace>& columns, const Eigen::VectorXd& coefficients);
+
 /// The ten terms of the bias model over f (already less its reference) and df, in their order.
 std::array<Eigen::ArrayXd, kBiasTermCount> bias_terms(const Eigen::ArrayXd& f, const Eigen::ArrayXd& df);
 

@@ -86,11 +86,10 @@ Comparison::Comparison(const Experiment& experiment, const Stand& stand, const N
   for (const auto& other : set.others) {
     const auto carried = carried_over(other, old.simulation(), s, first);
     if (!carried) continue;
-    const auto traces = first[carried->member.family].columns(s, carried->member.shape);
-    for (std::size_t i = 0; i < traces.size(); ++i)
-      for (const Output output : kOutputs)
-        if (traces[i][output].size() > 0)
-          outputs[output] += carried->coefficients[static_cast<Index>(i)] * traces[i][output];
+    const Trace added =
+        summed(first[carried->member.family].columns(s, carried->member.shape), carried->coefficients);
+    for (const Output output : kOutputs)
+      if (added[output].size() > 0) outputs[output] += added[output];
   }
   record(outputs);
   const double before_s = old.simulation().telemetry->step_s * static_cast<double>(old.space().block_rows());

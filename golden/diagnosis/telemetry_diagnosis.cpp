@@ -165,14 +165,8 @@ void Diagnosis::explain(TelemetryDiagnosis& result, const SearchResult& found) {
     }
     entry.probability = 1.0 / (1.0 + rest);
     const auto traces = family.columns(h.simulation(), result.members[i].shape);
-    for (std::size_t k = 0; k < traces.size(); ++k)
-      for (const Output output : kOutputs) {
-        const auto& column = traces[k][output];
-        if (column.size() == 0) continue;
-        if (entry.trace[output].size() == 0) entry.trace[output] = VectorXd::Zero(column.size());
-        entry.trace[output] +=
-            result.final.coefficients[result.final.first[i] + static_cast<Index>(k)] * column;
-      }
+    entry.trace = summed(
+        traces, result.final.coefficients.segment(result.final.first[i], static_cast<Index>(traces.size())));
     const auto disagreement = halves_disagree(h, result.members, i, result.final);
     const Output main = main_output(h, result.members[i], result.final, i);
     const bool better = std::ranges::any_of(result.improvement, [&](const Improvement& gain) {
