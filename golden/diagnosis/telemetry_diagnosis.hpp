@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "golden/diagnosis/bench_diagnosis.hpp"
+#include "golden/diagnosis/colour.hpp"
 #include "golden/diagnosis/earned_name.hpp"
 #include "golden/diagnosis/effect_search.hpp"
 #include "golden/diagnosis/events.hpp"
