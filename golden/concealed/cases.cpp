@@ -67,6 +67,10 @@ bool make_single(Build& build, const Kind& one, Wanted wanted) {
   return true;
 }
 
+bool is_noise(const std::string& id) {
+  return id == "rate_random_walk" || id == "rate_flicker";
+}
+
 /// Pairs that are nearly one over most runs, and pairs that meet by chance.
 bool make_pair(Build& build, std::uint64_t index) {
   static const std::vector<std::pair<const char*, const char*>> kClose{
@@ -91,16 +95,19 @@ bool make_pair(Build& build, std::uint64_t index) {
     while (ids.first == ids.second || ids.first == "cycle_slip" || ids.second == "cycle_slip" ||
            ids.first == "earth_rate" || ids.second == "earth_rate");
   }
+  // What is noise to the other comes first: the other's d' is over it.
+  if (is_noise(ids.second)) std::swap(ids.first, ids.second);
   const Kind &a = kind(ids.first), &b = kind(ids.second);
   set_up_for(build, a.needs | b.needs, 0.5);
   const auto limit = detectability(build.stand);
   const auto first = draw_effect(build.random, build.stand, limit, a, {20.0, 250.0});
   if (!first) return false;
-  const auto second = draw_effect(build.random, build.stand, limit, b, {20.0, 250.0});
+  const auto over = is_noise(ids.first) ? detectability_in(build.stand, first->noise) : limit;
+  const auto second = draw_effect(build.random, build.stand, over, b, {20.0, 250.0});
   if (!second) return false;
   build.add(*first, limit);
   build.add(*second, limit);
-  if (first->trace[0].size() > 0 && second->trace[0].size() > 0) {
+  if (!is_noise(ids.first) && first->trace[0].size() > 0 && second->trace[0].size() > 0) {
     build.result.effects[0].dprime_beside = limit.dprime_beside(first->trace, second->trace);
     build.result.effects[1].dprime_beside = limit.dprime_beside(second->trace, first->trace);
   }

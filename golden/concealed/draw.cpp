@@ -76,6 +76,14 @@ Detectability detectability(const Stand& stand) {
           stand.thermometer};
 }
 
+Detectability detectability_in(const Stand& stand, const NoiseLevel& more) {
+  auto noise = stand.unit.noise;
+  NoiseLevel& rate = noise[kRate];
+  rate.flicker = std::hypot(rate.flicker, more.flicker);
+  rate.random_walk = std::hypot(rate.random_walk, more.random_walk);
+  return {stand.unit.model, stand.in, stand.unit.nuisance.start_offset_degc, noise, stand.thermometer};
+}
+
 unsigned random_stimuli(Random& random, double rich_share) {
   if (!random.chance(rich_share)) return 0;
   unsigned set = 0;
@@ -119,6 +127,8 @@ std::optional<Drawn> draw_effect(Random& random, const Stand& stand, const Detec
     if (dprime < wanted.low || dprime > wanted.high) return std::nullopt;
   }
   drawn.unmistakable = form.unmistakable;
+  drawn.noise.flicker = form.noise.flicker * std::abs(drawn.truth.strength);
+  drawn.noise.random_walk = form.noise.random_walk * std::abs(drawn.truth.strength);
   drawn.truth.id = kind.id;
   drawn.truth.form = form.name;
   drawn.truth.dprime = drawn.truth.dprime_beside = dprime;

@@ -29,6 +29,8 @@ Stand random_stand(Random& random, const std::string& program, unsigned stimuli,
 void read_thermometer(Random& random, Stand& stand);
 
 Detectability detectability(const Stand& stand);
+/// With more noise on the rate.
+Detectability detectability_in(const Stand& stand, const NoiseLevel& more);
 
 /// A set of stimuli for recordings that ask for none in particular: none, or some of all.
 unsigned random_stimuli(Random& random, double rich_share);
@@ -45,6 +47,7 @@ struct Drawn {
   std::shared_ptr<const Effect> effect{};
   Trace trace{};
   bool unmistakable = false;  ///< Form's
+  NoiseLevel noise{};         ///< what the effect is to others, where it is noise on the rate
 };
 /// Nothing where this run cannot give such a d'.
 std::optional<Drawn> draw_effect(Random& random, const Stand& stand, const Detectability& limit,

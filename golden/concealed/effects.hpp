@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "golden/concealed/instrument.hpp"
 #include "golden/concealed/world.hpp"
 
 namespace hemi::concealed {
@@ -21,7 +22,8 @@ struct Form {
   bool scalable = true;       ///< false: the strength is `high`, whatever d' comes of it
   /// Where the effect has no noise-free trace: d' of a strength.
   std::function<double(double strength)> dprime{};
-  double sign = 1.0;                                    ///< given to the strength
+  NoiseLevel noise{};  ///< of a strength of 1, where the form is noise on the rate
+  double sign = 1.0;   ///< given to the strength
   std::function<Values(double strength)> parameters{};  ///< as the catalogue names them
 };
 

@@ -58,19 +58,24 @@ Form rate_flicker(const Setting& in) {
   level.flicker = 1.0;
   const Series drift = noise(level, in.in.time_s.size(), in.random);
   const Series centred = drift - drift.mean();
-  return added("shaped spectrum", Stage::kRate, kRate, centred / std::sqrt(centred.square().mean()), 2.0,
-               [](double deviation) {
-                 return Values{{"density", deviation}};
-               });
+  const double deviation = std::sqrt(centred.square().mean());
+  Form form = added("shaped spectrum", Stage::kRate, kRate, centred / deviation, 2.0, [](double size) {
+    return Values{{"density", size}};
+  });
+  form.noise.flicker = level.flicker / deviation;
+  return form;
 }
 
 Form rate_random_walk(const Setting& in) {
   Series walk(in.in.time_s.size());
   double at = 0.0;
   for (double& value : walk) value = at += in.random.normal();
-  return added("summed steps", Stage::kRate, kRate, walk, 0.2, [](double density) {
+  Form form = added("summed steps", Stage::kRate, kRate, walk, 0.2, [](double density) {
     return Values{{"density", density}};
   });
+  // One-sided density of steps of variance 1 a second: 2 / (2 pi f)^2.
+  form.noise.random_walk = std::numbers::sqrt2 / kTurn_rad;
+  return form;
 }
 
 /// Rows whose outputs repeat the row before, noise and all; the time stamps run on.

@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <complex>
+#include <numbers>
 #include <set>
+#include <unsupported/Eigen/FFT>
 
 #include "golden/concealed/draw.hpp"
+#include "golden/concealed/noise.hpp"
 
 namespace hemi::concealed {
 namespace {
@@ -64,6 +69,49 @@ TEST(Kinds, HaveNamesOfTheirOwn) {
   const auto ids = all_ids();
   EXPECT_EQ(std::set<std::string>(ids.begin(), ids.end()).size(), ids.size());
   EXPECT_THROW(kind("phlogiston"), std::out_of_range);
+}
+
+TEST(Drift, HasTheSpectrumThatItCountsWithAsNoiseToOthers) {
+  for (const char* id : {"rate_random_walk", "rate_flicker"}) {
+    Random random(11, id, 0);
+    const Stand stand = random_stand(random, "multispeed", 0);
+    const Form form = kind(id).draw({random, stand.in, stand.unit.model, stand.baseline});
+    const double offset = stand.unit.nuisance.start_offset_degc;
+    const Series drift =
+        simulate(stand.unit.model, stand.in, offset, {form.at(1.0)}).rate_dph - stand.baseline.rate_dph;
+    // Of steps: a drift itself ends elsewhere than it began, and that leaks into every line.
+    const auto n = static_cast<Eigen::Index>(std::bit_floor(static_cast<std::size_t>(drift.size() - 1)));
+    const Eigen::VectorXcd steps =
+        (drift.segment(1, n) - drift.head(n)).matrix().cast<std::complex<double>>();
+    Eigen::VectorXcd lines(n);
+    Eigen::FFT<double>().fwd(lines, steps);
+    double sum = 0.0;
+    const Eigen::Index from = 10, to = n / 20;
+    for (Eigen::Index k = from; k < to; ++k) {
+      const double f = static_cast<double>(k) / static_cast<double>(n);
+      const double expected = density(form.noise, f) * std::pow(2.0 * std::sin(std::numbers::pi * f), 2);
+      sum += std::norm(lines[k]) * 2.0 / static_cast<double>(n) / expected;
+    }
+    // A line's power over its density is exponential: deviation 1.
+    const auto count = static_cast<double>(to - from);
+    EXPECT_NEAR(sum / count, 1.0, 5.0 / std::sqrt(count)) << id;
+  }
+}
+
+TEST(Drift, IsNoiseToWhatElseMovesTheRate) {
+  Random random(12);
+  const Stand stand = random_stand(random, "cycle", 0);
+  Trace slow;
+  for (Series& series : slow) series = Series::Zero(stand.in.time_s.size());
+  slow[kRate] = (stand.in.time_s / 700.0).sin();
+  const auto beside = [&](double random_walk) {
+    NoiseLevel more;
+    more.random_walk = random_walk;
+    return detectability_in(stand, more).dprime(slow);
+  };
+  EXPECT_LT(beside(0.01), 0.99 * detectability(stand).dprime(slow));
+  // Where the walk is all of the noise d' falls as its density rises.
+  EXPECT_NEAR(beside(100.0) / beside(200.0), 2.0, 0.01);
 }
 
 TEST(OscillatorTemperature, MovesTheCountedFrequencyAlone) {
