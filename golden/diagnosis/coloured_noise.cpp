@@ -18,6 +18,8 @@ constexpr double kTimeRatio = 6.0;
 constexpr double kShortest = 0.5;  // blocks
 // Longer than the recording by this much a process is a walk within it.
 constexpr double kWalkLengths = 30.0;
+// Of a part to the white one.
+constexpr double kLeastRatio = 1e-7, kMostRatio = 8000.0;
 constexpr int kBits = 12;  // of the logarithm of a ratio: far finer than the likelihood can tell
 
 // Gains and innovation variances of every row; they do not depend on the data.
@@ -131,7 +133,10 @@ NoiseShape fit_noise_shape(const MatrixXd& x, const VectorXd& y, const std::vect
                            const NoiseShape& expected) {
   const double price = std::log(static_cast<double>(y.size()));
   NoiseShape shape;
+  shape.flicker = expected.flicker / expected.white;
+  shape.walk = expected.walk / expected.white;
   shape.behind_correlation = expected.behind_correlation;
+  const NoiseShape least = shape;
   const auto value = [&](const NoiseShape& s) { return restricted_likelihood(x, y, blocks, s, nullptr); };
   double now = value(shape);
   using Part = double NoiseShape::*;
@@ -141,7 +146,7 @@ NoiseShape fit_noise_shape(const MatrixXd& x, const VectorXd& y, const std::vect
           at.*part = std::exp(log_ratio);
           return value(at);
         },
-        -16.0, 9.0, kBits);
+        std::log(std::max(least.*part, kLeastRatio)), std::log(kMostRatio), kBits);
     at.*part = std::exp(best.first);
     found = best.second;
     return at;

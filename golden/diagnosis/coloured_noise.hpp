@@ -34,8 +34,9 @@ ColouredNoise coloured_noise(const NoiseShape& shape, Eigen::Index blocks);
 Eigen::MatrixXd whiten(const Eigen::MatrixXd& rows, const std::vector<Eigen::Index>& blocks,
                        const ColouredNoise& noise, double* log_determinant = nullptr);
 
-/// Fits the shape to y = X b + e by restricted maximum likelihood, X with orthonormal columns. A part is kept
-/// if it gains more than log(rows), `expected` its start; behind_correlation is as expected. Source: as
+/// Fits the shape to y = X b + e by restricted maximum likelihood, X with orthonormal columns. 1/f part and
+/// walk are no smaller against the white part than expected: what a maker states of his noise is knowledge.
+/// More of a part is kept if it gains more than log(rows); behind_correlation is as expected. Source: as
 /// calibration::fit_noise; Kalman filter for the likelihood: Harvey, Forecasting, Structural Time Series
 /// Models and the Kalman Filter (1989), section 3.4.
 NoiseShape fit_noise_shape(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,

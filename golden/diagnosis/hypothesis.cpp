@@ -61,6 +61,8 @@ Hypotheses::Hypotheses(const Telemetry& telemetry, const RowSpace& space, Simula
   const Trace difference = data_trace(telemetry, simulation_.nominal);
   data_ = space_.reduce({&difference});
   expected_ = expected_noise(simulation_, space_, data_);
+  // What the baseline explains (a lag above all) moves from block to block as well, and is no noise.
+  expected_ = expected_noise(simulation_, space_, fit({}, expected_).residual);
 }
 
 const Reduced& Hypotheses::columns(const Member& member) {

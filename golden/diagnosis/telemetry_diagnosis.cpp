@@ -23,8 +23,12 @@ using Members = std::vector<Member>;
 // In units of the score, twice a log likelihood.
 constexpr double kStructure = 40.0;  // a free function of an input
 constexpr double kStructureInTime = 150.0;
-constexpr double kWander = 4.5;   // squares of an output that nobody explains, over those expected
-constexpr double kColour = 25.0;  // colour of the rate that the model does not state
+constexpr double kWander = 4.5;  // squares of an output that nobody explains, over those expected
+// Colour of the rate that the model does not state. A likelihood of variances scatters by the noise's
+// kurtosis: heavy tails of kurtosis 6 make 2.5 of what Gaussian noise does.
+constexpr double kColour = 60.0;
+// Of an effect's trace: no equation of ours is better, and what it leaves behind is no noise.
+constexpr double kEquations = 0.01;
 constexpr double kRecalibrate_p = 1e-6;
 constexpr double kRecalibrateTogether_p = 1e-12;
 constexpr double kMovedAlone = 4.5;
@@ -173,6 +177,23 @@ Remainder along_no_input(Output output, double evidence) {
   return remainder;
 }
 
+// Deviation over the recording; a walk's about its mean is its end's over sqrt 6.
+double drift_of(const Colour& colour, const Simulation& s) {
+  const double duration_s = s.telemetry->step_s * static_cast<double>(s.telemetry->case_degc.size());
+  return colour.walk_over_flicker > 0.0 ? colour.walk * std::sqrt(duration_s / 6.0) : colour.flicker;
+}
+
+// Root mean square of what the effects do to an output.
+double size_of(const TelemetryDiagnosis& result, Output output) {
+  const std::size_t c = place(output);
+  VectorXd sum = VectorXd::Zero(result.hypotheses->space().rows(output));
+  for (std::size_t m = 0; m < result.members.size(); ++m) {
+    const MatrixXd& own = result.hypotheses->columns(result.members[m])[c];
+    sum += own * result.final.coefficients.segment(result.final.first[m], own.cols());
+  }
+  return std::sqrt(sum.squaredNorm() / static_cast<double>(std::max<Index>(sum.size(), 1)));
+}
+
 void Diagnosis::look_at_remainder(TelemetryDiagnosis& result) {
   result.remainders = remainders(*result.hypotheses, result.members, kStructure);
   for (auto& remainder : result.remainders) remainder.share = remaining_share(result, remainder.output);
@@ -180,7 +201,9 @@ void Diagnosis::look_at_remainder(TelemetryDiagnosis& result) {
   std::iota(all.begin(), all.end(), 0U);
   const Reduced forms = form_directions(*result.hypotheses, result.members, result.final, all);
   const Colour colour = colour_of(*result.hypotheses, result.members, forms, Output::rate);
-  if (colour.evidence > kColour && !colour.is_line()) result.colours.push_back(colour);
+  if (colour.evidence > kColour && !colour.is_line() &&
+      drift_of(colour, result.hypotheses->simulation()) > kEquations * size_of(result, Output::rate))
+    result.colours.push_back(colour);
   if (colour.evidence > kColour && colour.is_line())
     result.remainders.push_back(along_no_input(Output::rate, colour.evidence));
   for (const Output output : {Output::frequency, Output::drive, Output::quadrature}) {
