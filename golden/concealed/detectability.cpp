@@ -90,6 +90,19 @@ Eigen::VectorXd toeplitz_white(const Eigen::VectorXd& covariance, const Eigen::V
   return errors;
 }
 
+/// Rows [first, second) of every power cut.
+std::vector<std::pair<Eigen::Index, Eigen::Index>> cuts_of(const Series& power) {
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> cuts;
+  for (Eigen::Index i = 0; i < power.size(); ++i) {
+    if (power[i] != 0.0) continue;
+    if (!cuts.empty() && cuts.back().second == i)
+      ++cuts.back().second;
+    else
+      cuts.emplace_back(i, i + 1);
+  }
+  return cuts;
+}
+
 Trace difference(const State& a, const State& b) {
   Trace trace;
   for (int output = 0; output < kOutputs; ++output) trace[output] = a.output(output) - b.output(output);
@@ -119,7 +132,7 @@ Trace trace_of(const State& with, const State& without, const Model& model, cons
 
 Detectability::Detectability(const Model& model, const Excitation& in, double start_offset_degc,
                              const std::array<NoiseLevel, kOutputs>& noise, const Trace& thermometer)
-    : samples_(in.time_s.size()), blocks_(samples_ / kBlock_s) {
+    : samples_(in.time_s.size()), blocks_(samples_ / kBlock_s), cuts_(cuts_of(in.power)) {
   for (int output = 0; output < kOutputs; ++output) {
     const Periodogram from_case(thermometer[output]);
     const auto total = [&](double f) { return density(noise[output], f) + from_case(f); };
@@ -149,6 +162,11 @@ Detectability::Detectability(const Model& model, const Excitation& in, double st
   vary([](Model&, Excitation&, double& offset, double by) { offset += by; }, 0.02);
   vary([](Model&, Excitation& e, double&, double by) { e.case_ahead_degc = later(e.case_ahead_degc, by); },
        0.3);
+  // How warm the case was while nothing was recorded: the resonator may be anywhere afterwards.
+  for (const auto& [from, to] : cuts_)
+    vary([from = from, to = to](Model&, Excitation& e, double&,
+                                double by) { e.case_ahead_degc.segment(from, to - from) += by; },
+         0.1);
   // f reaches 10 Hz, df 3 mHz/s: steps that make about 1 deg/h each.
   const std::array<std::array<int, 2>, 10> powers{
       {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1}, {2, 1}, {1, 2}}};
@@ -168,8 +186,13 @@ Eigen::VectorXd Detectability::white(const Trace& trace) const {
   const Eigen::Index fast = 2 * (samples_ / 2 - 1), each = blocks_ + fast;
   Eigen::VectorXd all = Eigen::VectorXd::Zero(kOutputs * each);
   for (int output = 0; output < kOutputs; ++output) {
-    const Series& values = trace[output];
-    if (!(values != 0.0).any()) continue;
+    if (!(trace[output] != 0.0).any()) continue;
+    Series values = trace[output];
+    for (const auto& [from, to] : cuts_) {  // straight across what the file does not hold
+      const double before = values[std::max<Eigen::Index>(from - 1, 0)];
+      const double after = values[std::min(to, samples_ - 1)];
+      values.segment(from, to - from) = Series::LinSpaced(to - from, before, after);
+    }
     Eigen::VectorXd means(blocks_);
     Series within = values;
     for (Eigen::Index b = 0; b < blocks_; ++b) {

@@ -53,6 +53,7 @@ class Detectability {
   void add_nuisance(const Trace& trace);
 
   Eigen::Index samples_ = 0, blocks_ = 0;
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> cuts_{};  ///< rows that are not recorded
   std::array<Eigen::VectorXd, kOutputs> block_covariance_{};
   std::array<Series, kOutputs> fast_scale_{};  ///< 1 / root of the variance of a normalised Fourier line
   std::vector<Eigen::VectorXd> basis_{};

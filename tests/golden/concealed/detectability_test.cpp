@@ -110,6 +110,20 @@ TEST(Detectability, SeesNothingInWhatTheNominalNumbersTakeOver) {
   EXPECT_LT(limit.dprime(trace), 1e-3 * limit.raw(trace));
 }
 
+TEST(Detectability, SeesNothingOfHowWarmAPowerCutWas) {
+  Random random(25);
+  const Stand stand = random_stand(random, "multispeed", kPower);
+  ASSERT_TRUE((stand.in.power == 0.0).any());
+  const Detectability limit = detectability(stand);
+  const double offset = stand.unit.nuisance.start_offset_degc;
+  Excitation other = stand.in;
+  other.case_ahead_degc -= 0.3 * (1.0 - stand.in.power);
+  const Trace trace =
+      trace_of(simulate(stand.unit.model, other, offset), stand.baseline, stand.unit.model, stand.in, offset);
+  EXPECT_GT(limit.raw(trace), 1000.0);
+  EXPECT_LT(limit.dprime(trace), 1e-3 * limit.raw(trace));
+}
+
 TEST(Detectability, CountsALineInWhiteNoiseExactly) {
   // A sine of amplitude a at 0.2 Hz over n samples of deviation s: d' = a sqrt(n / 2) / s; nothing of the
   // nominal model takes part of it.
