@@ -171,7 +171,7 @@ Differences ideal_differences(const Input& input, const std::string& other) {
   return differences;
 }
 
-std::string to_text(const Differences& differences, const std::string& other) {
+std::string differences_text(const Differences& differences, const std::string& other) {
   std::string text = fmt::format("ideal against {}: differences after the start\n", other);
   for (std::size_t w = 0; w < word_names.size(); ++w)
     text += fmt::format("  {:<12} largest {:.3g}, rms {:.3g} {}\n", word_names[w], differences[w].largest,
@@ -179,7 +179,7 @@ std::string to_text(const Differences& differences, const std::string& other) {
   return text;
 }
 
-recording::Json to_json(const Differences& differences) {
+recording::Json differences_json(const Differences& differences) {
   recording::Json json;
   for (std::size_t w = 0; w < word_names.size(); ++w)
     json[word_names[w]] = {
@@ -286,8 +286,9 @@ int compare(CompareOptions options) {
   waves.commit();
   if (ideal) {
     const auto differences = ideal_differences(input, options.engines.front());
-    json.push_back({{"engines", {"ideal", options.engines.front()}}, {"differences", to_json(differences)}});
-    page.ideal = to_text(differences, options.engines.front());
+    json.push_back(
+        {{"engines", {"ideal", options.engines.front()}}, {"differences", differences_json(differences)}});
+    page.ideal = differences_text(differences, options.engines.front());
     if (!options.json) fmt::print("{}", page.ideal);
   }
   if (!options.report.empty()) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/diagnose_case.hpp"
 
+#include "cli/diagnose_report.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +26,7 @@ using diagnosis::Verdict;
 using recording::Json;
 using recording::Recording;
 
-constexpr std::size_t kMostRows = 20000;
+constexpr std::size_t kMostCaseRows = 20000;
 constexpr double kDphPerDegS = 3600.0;
 
 const char* const kExperiment =
@@ -57,13 +59,6 @@ Json parameters_of(const std::vector<MemoryParameter>& list, bool samples, bool 
       json[each.name]["ci95"] = {each.value - each.half_width95, each.value + each.half_width95};
   }
   return json;
-}
-
-Json before_after(const Gain& gain, double floor_rms) {
-  return {{"before_rms", gain.before_rms},
-          {"after_rms", gain.after_rms},
-          {"floor_rms", floor_rms},
-          {"gain_ci95", {gain.low, gain.high}}};
 }
 
 std::string why_open(const CaseMemory& result, const FoundMemory& found) {
@@ -139,7 +134,7 @@ diagnosis::CaseRows case_rows(const Recording& recording) {
   std::vector<std::size_t> whole;
   for (std::size_t i = 0; i < time.size(); ++i)
     if (!std::isnan(degc[i]) && !std::isnan(rate[i]) && !std::isnan(applied[i])) whole.push_back(i);
-  const std::size_t group = whole.size() / kMostRows + 1;
+  const std::size_t group = whole.size() / kMostCaseRows + 1;
   const auto n = static_cast<Eigen::Index>(whole.size() / group);
   diagnosis::CaseRows rows{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
   for (Eigen::Index i = 0; i < n; ++i) {

@@ -44,13 +44,6 @@ Json parameter(double value, const char* unit, double half) {
   return {{"value", value}, {"unit", unit}, {"ci95", {value - half, value + half}}};
 }
 
-Json before_after(const Gain& gain, double floor_rms) {
-  return {{"before_rms", gain.before_rms},
-          {"after_rms", gain.after_rms},
-          {"floor_rms", floor_rms},
-          {"gain_ci95", {gain.low, gain.high}}};
-}
-
 int degree(diagnosis::Term term) {
   using diagnosis::Term;
   switch (term) {
@@ -156,6 +149,13 @@ std::string trial_table(const BenchDiagnosis& result) {
 }
 
 }  // namespace
+
+Json before_after(const Gain& gain, double floor_rms) {
+  return {{"before_rms", gain.before_rms},
+          {"after_rms", gain.after_rms},
+          {"floor_rms", floor_rms},
+          {"gain_ci95", {gain.low, gain.high}}};
+}
 
 std::string to_text(const BenchDiagnosis& result) {
   std::string text = fmt::format("verdict: {}\nmodel: {}; input between samples: {}\n", name(result.verdict),

@@ -17,6 +17,8 @@ struct DiagnosedFiles {
   double from_s, to_s;
 };
 
+/// Root mean squares before and after, of noise alone, and the gain's interval.
+recording::Json before_after(const diagnosis::Gain& gain, double floor_rms);
 std::string to_text(const diagnosis::BenchDiagnosis& result);
 /// Format hemi-diagnosis/1.
 recording::Json to_json(const diagnosis::BenchDiagnosis& result, const DiagnosedFiles& files);

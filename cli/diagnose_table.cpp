@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "cli/chain_run.hpp"
+#include "cli/diagnose_report.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/write.hpp"
 #include "golden/calibration/settled_points.hpp"
@@ -29,13 +30,6 @@ const char* const kChamberExperiment =
     "repeat every soak twice, from below and from above, with a second thermometer: a chamber's error does "
     "not "
     "come again with the same sign at the same soak";
-
-Json before_after(const Gain& gain, double floor_rms) {
-  return {{"before_rms", gain.before_rms},
-          {"after_rms", gain.after_rms},
-          {"floor_rms", floor_rms},
-          {"gain_ci95", {gain.low, gain.high}}};
-}
 
 // 10^log10_p as text, also where a double would underflow.
 std::string power_of_ten(double log10_p) {

@@ -15,9 +15,9 @@
 namespace hemi::calibration {
 namespace {
 
-constexpr Eigen::Index kRows = 1500;
+constexpr Eigen::Index kThermalRows = 1500;
 constexpr double kLeastTravelDegc = 1.0;
-constexpr double kLevel = 0.05;
+constexpr double kOrderLevel = 0.05;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::vector<RowBlocks::Range> whole(const std::vector<ThermalStretch>& stretches) {
@@ -170,7 +170,7 @@ Eigen::VectorXd start_values(const std::vector<ThermalStretch>& stretches, const
                              const Scale& scale, const std::optional<Eigen::VectorXd>& known) {
   Eigen::Index total = 0;
   for (const auto& s : stretches) total += s.time_s.size();
-  const Eigen::Index thin = block_length(total, kRows);
+  const Eigen::Index thin = block_length(total, kThermalRows);
   const Eigen::Index order = known ? known->size() - 1 : std::min<Eigen::Index>(layout.coefficients() - 1, 3);
   double least = kInfinity;
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(layout.size());
@@ -262,7 +262,7 @@ ThermalFit fit_thermal(const std::vector<ThermalStretch>& stretches, const Therm
   }
   Eigen::Index total = 0;
   for (const auto& s : stretches) total += s.time_s.size();
-  const Eigen::Index averaged = block_length(total, kRows);
+  const Eigen::Index averaged = block_length(total, kThermalRows);
   const RowBlocks blocks(stretches, whole(stretches), averaged);
   NonlinearProblem problem;
   const Eigen::VectorXd start = start_values(stretches, layout, scale, known);
@@ -318,8 +318,8 @@ Eigen::Index order_of_recordings(const std::vector<ThermalStretch>& stretches, d
   for (Eigen::Index order = 2; order <= most + 2; ++order)
     p_values.push_back(fit_thermal(stretches, {order, reference_degc, std::nullopt}).highest_order_p);
   Eigen::Index chosen = 1;
-  while (chosen < most && (p_values[static_cast<std::size_t>(chosen - 1)] < kLevel ||
-                           p_values[static_cast<std::size_t>(chosen)] < kLevel))
+  while (chosen < most && (p_values[static_cast<std::size_t>(chosen - 1)] < kOrderLevel ||
+                           p_values[static_cast<std::size_t>(chosen)] < kOrderLevel))
     ++chosen;
   return chosen;
 }

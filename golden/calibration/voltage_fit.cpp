@@ -11,9 +11,9 @@
 namespace hemi::calibration {
 namespace {
 
-constexpr Eigen::Index kRows = 1000;
+constexpr Eigen::Index kVoltageRows = 1000;
 constexpr Eigen::Index kLeastRows = 40;
-constexpr double kLevel = 0.01;
+constexpr double kVoltageLevel = 0.01;
 
 // Column means over blocks; what is left of a segment after its last whole block is not used.
 struct Averaged {
@@ -27,7 +27,7 @@ Averaged average(const Eigen::MatrixXd& x, const Eigen::VectorXd& y, const std::
   const Eigen::Index total = total_rows(segments);
   if (total < kLeastRows) throw std::invalid_argument("fewer than 40 usable rows");
   Averaged out;
-  out.length = std::max<Eigen::Index>(1, total / kRows);
+  out.length = std::max<Eigen::Index>(1, total / kVoltageRows);
   Eigen::Index rows = 0;
   for (const RowRange& range : segments) {
     const Eigen::Index blocks = range.count / out.length;
@@ -55,7 +55,7 @@ std::vector<Eigen::Index> first_columns(Eigen::Index count) {
 
 Eigen::Index choose_order(const WhitenedRegression& regression, Eigen::Index most) {
   const auto matters = [&](Eigen::Index power) {
-    return regression.test(first_columns(power + 1), static_cast<std::size_t>(power)).p_value < kLevel;
+    return regression.test(first_columns(power + 1), static_cast<std::size_t>(power)).p_value < kVoltageLevel;
   };
   Eigen::Index order = 0;
   while (order < most && (matters(order + 1) || (order + 2 <= most && matters(order + 2)))) ++order;

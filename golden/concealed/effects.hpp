@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "golden/concealed/world.hpp"
 
 namespace hemi::concealed {
+
+inline constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 
 /// One effect with everything drawn but its strength, for one instrument and one run.
 struct Form {

@@ -9,8 +9,6 @@
 namespace hemi::concealed {
 namespace {
 
-constexpr double kTurn_rad = 2.0 * std::numbers::pi;
-
 Form added(const std::string& name, Stage stage, int output, const Series& shape, double high,
            std::function<Values(double)> parameters) {
   Form form;

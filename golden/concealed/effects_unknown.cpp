@@ -8,8 +8,6 @@
 namespace hemi::concealed {
 namespace {
 
-constexpr double kTurn_rad = 2.0 * std::numbers::pi;
-
 Form shaped(const std::string& name, Stage stage, int output, const Series& shape, double high, double sign) {
   Form form;
   form.name = name;

@@ -13,7 +13,6 @@ namespace {
 using calibration::RowRange;
 constexpr Eigen::Index kBlocks = 40;
 constexpr Eigen::Index kFolds = 8;
-constexpr double kFamilyWise = 0.01;
 // The best must add this many times more to a rival than the rival adds to it.
 constexpr double kMargin = 10.0;
 // Terms whose gain is at least this share of the best one's linearised gain are fitted and run freely.

@@ -18,7 +18,6 @@ namespace {
 using calibration::RowRange;
 constexpr int kResamples = 2000;
 constexpr int kPermutations = 2000;
-constexpr double kFamilyWise = 0.01;
 constexpr Eigen::Index kMostOrder = 12;
 
 double quantile(std::vector<double> values, double share) {

@@ -9,6 +9,9 @@
 
 namespace hemi::diagnosis {
 
+/// Share of catalogues with no effect in them that are given a name.
+inline constexpr double kFamilyWise = 0.01;
+
 /// Root mean squares before and after, and their difference with its 95 % interval (percentiles of a
 /// bootstrap over whole blocks).
 struct Gain {

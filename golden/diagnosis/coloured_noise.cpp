@@ -22,7 +22,8 @@ constexpr double kWalkLengths = 30.0;
 constexpr double kLeastRatio = 1e-7, kMostRatio = 8000.0;
 constexpr int kBits = 12;  // of the logarithm of a ratio: far finer than the likelihood can tell
 
-// Gains and innovation variances of every row; they do not depend on the data.
+// Gains and innovation variances of every row; they do not depend on the data. A row tells something of its
+// own block's step of a walk as well: the walk is carried on to the block's end.
 struct Filter {
   MatrixXd gain;       // process x row
   VectorXd deviation;  // of the innovation
@@ -34,6 +35,7 @@ Filter make_filter(const std::vector<Index>& blocks, const ColouredNoise& noise)
   Filter filter{MatrixXd(n, rows), VectorXd(rows), 0.0};
   const VectorXd& a = noise.correlation;
   const VectorXd drive = noise.variance.array() * (1.0 - a.array().square());
+  const double step = noise.walk_step;
   MatrixXd p = noise.variance.asDiagonal();
   for (Index t = 0; t < rows; ++t) {
     const Index skipped =
@@ -41,13 +43,18 @@ Filter make_filter(const std::vector<Index>& blocks, const ColouredNoise& noise)
     for (Index k = 0; k < skipped; ++k) {
       p = a.asDiagonal() * p * a.asDiagonal();
       p.diagonal() += drive;
+      if (step > 0.0 && k == 0) p(n - 1, n - 1) -= drive[n - 1];  // taken along by the row before
     }
-    const VectorXd sum = p.rowwise().sum();
-    const double variance = sum.sum() + noise.white;
-    filter.gain.col(t) = sum / variance;
+    VectorXd covariance = p.rowwise().sum();
+    const double variance = covariance.sum() + step / 3.0 + noise.white;
+    if (step > 0.0) {
+      covariance[n - 1] += 0.5 * step;
+      p(n - 1, n - 1) += step;
+    }
+    filter.gain.col(t) = covariance / variance;
     filter.deviation[t] = std::sqrt(variance);
     filter.log_determinant += std::log(variance);
-    p -= sum * sum.transpose() / variance;
+    p -= covariance * covariance.transpose() / variance;
   }
   return filter;
 }
@@ -78,11 +85,12 @@ ColouredNoise coloured_noise(const NoiseShape& shape, Index blocks) {
     }
   if (shape.walk > 0.0) {
     const double a = walk_correlation(blocks);
-    variance.push_back(shape.walk / (1.0 - a * a));
+    variance.push_back(shape.walk * a * a / (1.0 - a * a));
     correlation.push_back(a);
   }
   const auto count = static_cast<Index>(variance.size());
-  return {shape.white, VectorXd::Map(variance.data(), count), VectorXd::Map(correlation.data(), count)};
+  return {shape.white, VectorXd::Map(variance.data(), count), VectorXd::Map(correlation.data(), count),
+          shape.walk};
 }
 
 MatrixXd whiten(const MatrixXd& rows, const std::vector<Index>& blocks, const ColouredNoise& noise,

@@ -8,13 +8,16 @@ namespace hemi::diagnosis {
 
 /// Gaussian noise of one output's rows: white, and first-order processes x' = a x + u that are independent of
 /// each other. 1/f noise is a sum of such with equal variances and correlation times in geometric order
-/// (within 3 % for a ratio of 6); a random walk one whose time is far longer than the recording.
+/// (within 3 % for a ratio of 6); a random walk one whose time is far longer than the recording. A block's
+/// mean of a walk with steps of variance s a block is its value at the block's start and a part of variance s
+/// / 3 whose covariance with the step is s / 2 (integrals of a Wiener process over the block).
 struct ColouredNoise {
   double white = 1.0;           ///< variance of a row
   Eigen::VectorXd variance;     ///< of each process
   Eigen::VectorXd correlation;  ///< a of each, from block to block, inside (0, 1)
+  double walk_step = 0.0;       ///< s of the walk, which is the last of the processes; 0: there is none
 
-  double total_variance() const { return white + variance.sum(); }
+  double total_variance() const { return white + variance.sum() + walk_step / 3.0; }
 };
 
 /// Kinds of colour that an output's noise may have, in units of blocks.

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::ArrayXd;
 using Shape = std::vector<double>;
-constexpr double kHour_s = 3600.0;
+constexpr double kCommandHour_s = 3600.0;
 constexpr double kBoardReference_degc = 25.0;
 
 Trace in(Output output, const ArrayXd& column) {
@@ -83,7 +83,7 @@ EffectFamily gas_leak() {
   family.grid = geometric_grid(5.0, 80.0, 2.0);
   family.spacing = {2.0};
   family.columns = [](const Simulation& s, const Shape& shape) {
-    const ArrayXd hours = s.time_s / kHour_s;
+    const ArrayXd hours = s.time_s / kCommandHour_s;
     return std::vector<Trace>{
         in(Output::drive, command(s, Output::drive) * shape[0] * (1.0 - (-hours / shape[0]).exp()))};
   };
@@ -113,10 +113,11 @@ EffectFamily split_in_time() {
   family.effect = "frequency_split";
   family.form = "quadrature += A r t";
   family.columns = [](const Simulation& s, const Shape&) {
-    return std::vector<Trace>{in(Output::quadrature, s.telemetry->amplitude.array() * s.time_s / kHour_s)};
+    return std::vector<Trace>{
+        in(Output::quadrature, s.telemetry->amplitude.array() * s.time_s / kCommandHour_s)};
   };
   family.figures = [](const Simulation& s, const Shape& c, const Shape&) {
-    return std::vector<Figure>{{"span", "V", std::abs(c[0]) * span(s.time_s) / kHour_s}};
+    return std::vector<Figure>{{"span", "V", std::abs(c[0]) * span(s.time_s) / kCommandHour_s}};
   };
   return family;
 }

@@ -11,7 +11,7 @@ namespace {
 using Eigen::ArrayXd;
 using Shape = std::vector<double>;
 constexpr double kTimeRatio = 1.6;
-constexpr double kLagRatio = 1.5;
+constexpr double kFrequencyLagRatio = 1.5;
 constexpr double kSlowest_s = 600.0;  // what is over sooner is no ageing
 constexpr double kMostAgeing_ppm = 20.0;
 constexpr double kSecondsADay = 86400.0;
@@ -128,8 +128,8 @@ EffectFamily loop_lag(const Simulation& s, int poles) {
   EffectFamily family;
   family.effect = "pll_lag";
   family.form = poles == 1 ? "tau_p f_out' = f - f_out" : "f_out behind f by two poles of tau_p / 2";
-  family.grid = geometric_grid(2.0 * s.telemetry->step_s, 300.0 * s.telemetry->step_s, kLagRatio);
-  family.spacing = {kLagRatio};
+  family.grid = geometric_grid(2.0 * s.telemetry->step_s, 300.0 * s.telemetry->step_s, kFrequencyLagRatio);
+  family.spacing = {kFrequencyLagRatio};
   family.columns = [poles](const Simulation& at, const Shape& shape) {
     ArrayXd behind = at.smooth_f;
     for (int i = 0; i < poles; ++i)

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::ArrayXd;
 using Shape = std::vector<double>;
-constexpr double kLagRatio = 1.35;
+constexpr double kThermalLagRatio = 1.35;
 constexpr double kRadiusRatio = 1.5;
 constexpr double kLeastSwing_degc = 1.0;
 constexpr double kLongestSeries_s = 600.0;
@@ -44,10 +44,10 @@ EffectFamily second_time_constant(const Simulation& s, SecondBody body) {
   family.form = series   ? "T = lag(T, tau2)"
                 : beside ? "T += w (lag(case, tau2) - T)"
                          : "T += w (lag(T, tau2) - T)";
-  family.grid = series   ? geometric_grid(4.0 * s.telemetry->step_s, kLongestSeries_s, kLagRatio)
-                : beside ? geometric_grid(1.35 * s.model.time_constant_s, 20000.0, kLagRatio)
-                         : geometric_grid(kLongestSeries_s, 20000.0, kLagRatio);
-  family.spacing = {kLagRatio};
+  family.grid = series   ? geometric_grid(4.0 * s.telemetry->step_s, kLongestSeries_s, kThermalLagRatio)
+                : beside ? geometric_grid(1.35 * s.model.time_constant_s, 20000.0, kThermalLagRatio)
+                         : geometric_grid(kLongestSeries_s, 20000.0, kThermalLagRatio);
+  family.spacing = {kThermalLagRatio};
   family.columns = [beside](const Simulation& at, const Shape& shape) {
     const ArrayXd behind = beside ? case_behind(at, shape[0])
                                   : lag(at.smooth_degc, at.telemetry->step_s, shape[0], at.smooth_degc[0]);
@@ -68,8 +68,8 @@ EffectFamily gradient(const Simulation& s) {
   EffectFamily family;
   family.effect = "thermal_gradient_bias";
   family.form = "rate += g (case - lag(case, tau_n))";
-  family.grid = geometric_grid(std::max(50.0, 4.0 * s.telemetry->step_s), 20000.0, kLagRatio);
-  family.spacing = {kLagRatio};
+  family.grid = geometric_grid(std::max(50.0, 4.0 * s.telemetry->step_s), 20000.0, kThermalLagRatio);
+  family.spacing = {kThermalLagRatio};
   family.columns = [](const Simulation& at, const Shape& shape) {
     return std::vector<Trace>{in_rate(at.smooth_case_degc - case_behind(at, shape[0]))};
   };
@@ -85,9 +85,9 @@ EffectFamily gradient_of_two(const Simulation& s) {
   family.form = "rate += g (n - lag(n, tau_n)), n = lag(case, tau_1)";
   family.grid.clear();
   for (const double outer : {40.0, 120.0})
-    for (const auto& inner : geometric_grid(3.0 * outer, 20000.0, kLagRatio * kLagRatio))
+    for (const auto& inner : geometric_grid(3.0 * outer, 20000.0, kThermalLagRatio * kThermalLagRatio))
       family.grid.push_back({inner[0], outer});
-  family.spacing = {kLagRatio * kLagRatio, 3.0};
+  family.spacing = {kThermalLagRatio * kThermalLagRatio, 3.0};
   family.columns = [](const Simulation& at, const Shape& shape) {
     const ArrayXd outer = case_behind(at, shape[1]);
     return std::vector<Trace>{in_rate(outer - lag(outer, at.telemetry->step_s, shape[0], outer[0]))};
@@ -166,8 +166,8 @@ EffectFamily self_heating(const Simulation& s, bool restarts, int bodies) {
   family.form = bodies == 1 ? "T += rise (1 - exp(-t / t0))"
                             : "T += r1 (1 - exp(-t / t0)) + r2 (1 - exp(-t / (0.15 t0)))";
   if (restarts) family.form += ", again after every power cut";
-  family.grid = geometric_grid(60.0, 2.0 * s.time_s[s.time_s.size() - 1], kLagRatio);
-  family.spacing = {kLagRatio};
+  family.grid = geometric_grid(60.0, 2.0 * s.time_s[s.time_s.size() - 1], kThermalLagRatio);
+  family.spacing = {kThermalLagRatio};
   family.columns = [=](const Simulation& at, const Shape& shape) {
     std::vector<Trace> columns = {at.thermal(warmth(at, shape[0], restarts))};
     if (bodies > 1) columns.push_back(at.thermal(warmth(at, kFastPart * shape[0], restarts)));

@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 using Members = std::vector<Member>;
 
 // In units of the score, twice a log likelihood.
-constexpr double kStructure = 40.0;  // a free function of an input
+constexpr double kStructure = 50.0;  // a free function of an input
 constexpr double kStructureInTime = 150.0;
 constexpr double kWander = 4.5;  // squares of an output that nobody explains, over those expected
 // Colour of the rate that the model does not state. A likelihood of variances scatters by the noise's

@@ -8,7 +8,6 @@ namespace hemi::physics {
 
 namespace {
 
-constexpr double kReferenceDegc = 20.0;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 double polynomial(const std::vector<double>& ascending, double argument) {
@@ -22,7 +21,6 @@ double polynomial(const std::vector<double>& ascending, double argument) {
 }  // namespace
 
 Parameters Instrument::at(double shell_degc) const {
-  constexpr double kTwoPi = 2.0 * std::numbers::pi;
   const auto omega = [&](double degc) {
     return kTwoPi * polynomial(frequency_hz, degc - frequency_reference_degc);
   };

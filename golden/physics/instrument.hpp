@@ -9,6 +9,9 @@
 
 namespace hemi::physics {
 
+/// At which an instrument\'s quality factor and split are stated.
+inline constexpr double kReferenceDegc = 20.0;
+
 /// Nominal values of a 30 mm instrument with quality factor 1e7; sources in docs/physics.md.
 struct Instrument {
   // frequency and damping over the shell's temperature; ascending polynomials about the reference

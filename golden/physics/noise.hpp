@@ -48,6 +48,9 @@ class Gaussian {
   boost::random::normal_distribution<double> normal_;
 };
 
+/// Where 1/f noise of the instrument begins.
+inline constexpr double kFlickerLowestHz = 1e-5;
+
 /// Flicker noise of density S(f) = h / f between `lowest_hz` and `highest_hz`: first-order poles, two a
 /// decade, of equal variance h ln(sqrt 10). S then ripples by 2 / cosh(pi^2 / ln(sqrt 10)) = 0.08 %. The
 /// poles go on for one and a half decades beyond either end, where S is 1.1 % low for want of more. It starts

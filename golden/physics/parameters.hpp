@@ -7,6 +7,7 @@
 
 namespace hemi::physics {
 
+inline constexpr double kTwoPi = 2.0 * std::numbers::pi;
 inline constexpr double kRadPerSecondPerDph = std::numbers::pi / (180.0 * 3600.0);
 
 /// The instrument at one instant, as the resonator's equations use it (docs/physics.md). Displacements are in

@@ -9,8 +9,6 @@ namespace hemi::physics {
 
 namespace {
 
-constexpr double kReferenceDegc = 20.0;
-constexpr double kFlickerLowestHz = 1e-5;
 constexpr double kFlickerHighestHz = 100.0;
 
 enum NoiseStream : std::uint64_t { kPickoff, kForce, kOscillator, kRateFlicker };

@@ -16,8 +16,6 @@ namespace hemi::physics {
 
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
-
 /// Averages over one interval of the true amplitude and its powers.
 struct Amplitude {
   double slope_per_s;

@@ -4,15 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "golden/physics/noise.hpp"
 #include "hls/config.hpp"
 
 namespace hemi::physics {
 
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kOutputInterval_s = 1.0 / config::output_rate_hz;
-constexpr double kFlickerLowestHz = 1e-5;
 
 enum NoiseStream : std::uint64_t { kRebalance = 101, kQuadrature, kAmplitude, kFlicker, kOther };
 

@@ -25,6 +25,10 @@ MatrixXd covariance(const ColouredNoise& noise, const std::vector<Index>& blocks
       c(i, j) = i == j ? noise.white : 0.0;
       for (Index k = 0; k < noise.variance.size(); ++k)
         c(i, j) += noise.variance[k] * std::pow(noise.correlation[k], apart);
+      // Of the walk within a block: with itself, and with what the walk is at the start of a later one.
+      c(i, j) +=
+          i == j ? noise.walk_step / 3.0
+                 : 0.5 * noise.walk_step * std::pow(noise.correlation[noise.correlation.size() - 1], apart);
     }
   return c;
 }
@@ -65,6 +69,37 @@ TEST(ColouredNoise, FlickerHasEqualPowerInEqualRatiosOfFrequency) {
   }
   EXPECT_NEAR(std::sqrt(low * high), 1.0 / std::log(6.0), 0.05 / std::log(6.0));
   EXPECT_LT(high / low, 1.1);
+}
+
+TEST(ColouredNoise, MeansOfAWalkHaveTheCovarianceOfItsIntegrals) {
+  // Steps of 1 in each of 50 rows a block, all of a block's rows averaged: variance of a difference of
+  // neighbours 2/3 of a block's step, covariance of two such differences in a row 1/6 (Wiener process).
+  const NoiseShape shape{.white = 0.0, .walk = 1.0};
+  const ColouredNoise noise = coloured_noise(shape, 4);
+  const MatrixXd c = covariance(noise, {0, 1, 2});
+  EXPECT_NEAR(c(0, 0) - 2.0 * c(0, 1) + c(1, 1), 2.0 / 3.0, 0.01);
+  EXPECT_NEAR(c(0, 1) - c(0, 2) - c(1, 1) + c(1, 2), 1.0 / 6.0, 0.01);
+}
+
+TEST(ColouredNoise, FindsTheStepOfAWalkThatDrownsTheWhiteNoise) {
+  constexpr Index kBlocks = 1500, kWithin = 20;
+  std::vector<Index> blocks(kBlocks);
+  for (Index i = 0; i < kBlocks; ++i) blocks[static_cast<std::size_t>(i)] = i;
+  const MatrixXd x = MatrixXd::Constant(kBlocks, 1, 1.0 / std::sqrt(static_cast<double>(kBlocks)));
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  double state = 0.0, mean = 0.0;
+  constexpr int kRuns = 10;
+  for (int run = 0; run < kRuns; ++run) {
+    VectorXd y = VectorXd::Zero(kBlocks);
+    for (Index i = 0; i < kBlocks; ++i)
+      for (Index j = 0; j < kWithin; ++j)
+        y[i] += ((state += normal(random)) + 0.5 * normal(random)) / static_cast<double>(kWithin);
+    mean += fit_noise_shape(x, y, blocks, {}).walk / static_cast<double>(kWithin * kRuns);
+  }
+  // A variance from 15 000 differences that correlate by a quarter: sqrt(2 (1 + 2 / 16) / 15 000) = 1.2 %;
+  // four of them, and 1 % for twenty steps that are no Wiener process.
+  EXPECT_NEAR(mean, 1.0, 0.06);
 }
 
 TEST(ColouredNoise, FindsNoColourInWhiteNoiseAndTheWalkInAWalk) {
