@@ -33,6 +33,8 @@ constexpr double kRecalibrate_p = 1e-6;
 constexpr double kRecalibrateTogether_p = 1e-12;
 constexpr double kMovedAlone = 4.5;
 constexpr double kRemaining = 0.35;  // of the squares beyond noise
+constexpr double kJump = 6.0;        // deviations
+constexpr Index kLeastJumps = 3;
 constexpr std::size_t kLeastRepeats = 3;
 constexpr int kRounds = 3;
 
@@ -177,6 +179,17 @@ Remainder along_no_input(Output output, double evidence) {
   return remainder;
 }
 
+// Squares of the innovations that no noise makes: of the rows that stand kJump deviations off, if there are
+// several. What comes and goes looks like a walk to the fit of the noise; its steps do not.
+double jumps(const TelemetryDiagnosis& result, Output output) {
+  const std::size_t c = place(output);
+  const RowSpace& space = result.hypotheses->space();
+  const VectorXd white = whiten(result.final.residual[c], space.blocks(output),
+                                coloured_noise(result.final.noise[c], space.block_count()));
+  const auto off = white.array().abs() > kJump;
+  return off.count() < kLeastJumps ? 0.0 : off.select(white.array().square(), 0.0).sum();
+}
+
 // Deviation over the recording; a walk's about its mean is its end's over sqrt 6.
 double drift_of(const Colour& colour, const Simulation& s) {
   const double duration_s = s.telemetry->step_s * static_cast<double>(s.telemetry->case_degc.size());
@@ -213,8 +226,10 @@ void Diagnosis::look_at_remainder(TelemetryDiagnosis& result) {
     const double expected =
         coloured_noise(result.hypotheses->expected()[c], space_.block_count()).total_variance();
     const double ratio = result.final.residual[c].squaredNorm() / (static_cast<double>(rows) * expected);
-    if (ratio <= kWander) continue;
-    result.remainders.push_back(along_no_input(output, static_cast<double>(rows) * (ratio - 1.0)));
+    const double evidence =
+        ratio > kWander ? static_cast<double>(rows) * (ratio - 1.0) : jumps(result, output);
+    if (evidence == 0.0) continue;
+    result.remainders.push_back(along_no_input(output, evidence));
     result.remainders.back().share = remaining_share(result, output);
   }
 }
