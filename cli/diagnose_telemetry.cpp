@@ -315,10 +315,13 @@ recording::InstrumentModel corrected_model(const TelemetryDiagnosis& result,
   model.scale_factor = now.scale_factor;
   if (model.drive) model.drive->coefficients_v = now.drive_v.coefficients;
   if (model.quadrature) model.quadrature->coefficients_v = now.quadrature_v.coefficients;
-  model.effects = Json::array();
-  for (const auto& entry : result.named)
-    model.effects.push_back(
-        {{"id", entry.effect}, {"equation", entry.form}, {"parameters", parameters(entry)}});
+  if (!model.effects.is_array()) model.effects = Json::array();
+  for (const auto& entry : result.named) {
+    Json effect = {{"id", entry.effect}, {"equation", entry.form}, {"parameters", parameters(entry)}};
+    if (!entry.coefficients.empty())
+      effect["fit"] = {{"shape", entry.shape}, {"coefficients", entry.coefficients}};
+    model.effects.push_back(std::move(effect));
+  }
   return model;
 }
 
@@ -339,6 +342,9 @@ int diagnose_telemetry(const recording::Recording& recording, const DiagnoseTele
     search.check = recording::check_interrupt;
     search.tick = [&](double share) { progress.update(share); };
     result = diagnosis::diagnose_telemetry(input.telemetry, nominal, search);
+  } catch (const diagnosis::BadEffect& error) {
+    throw recording::InputError({.path = options.model, .channel = "effects"}, error.what(),
+                                "take the list as hemi diagnose wrote it");
   } catch (const std::invalid_argument& error) {
     throw recording::InputError({.path = recording.path}, error.what(), "record longer");
   }

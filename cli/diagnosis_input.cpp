@@ -225,6 +225,52 @@ DiagnosisInput telemetry_of(const recording::Recording& recording, const recordi
   return input;
 }
 
+namespace {
+
+[[noreturn]] void refuse_effect(const recording::InstrumentModel& model, const std::string& what) {
+  throw recording::InputError({.path = model.path, .channel = "effects"}, what,
+                              "take the list as hemi diagnose wrote it");
+}
+
+std::vector<double> numbers_of(const recording::InstrumentModel& model, const recording::Json& fit,
+                               const char* key) {
+  std::vector<double> numbers;
+  const recording::Json list = fit.is_object() ? fit.value(key, recording::Json()) : recording::Json();
+  if (!list.is_array()) refuse_effect(model, fmt::format("fit.{} is no list of numbers", key));
+  for (const auto& value : list) {
+    if (!value.is_number()) refuse_effect(model, fmt::format("fit.{} is no list of numbers", key));
+    numbers.push_back(value.get<double>());
+  }
+  return numbers;
+}
+
+// What the model has named already: a colour is noise, the rest is simulated. Without `fit` (events, lines)
+// it is looked for anew.
+void take_effects(const recording::InstrumentModel& model, diagnosis::NominalModel& nominal) {
+  if (!model.effects.is_array()) return;
+  for (const recording::Json& item : model.effects) {
+    if (!item.is_object() || !item.contains("id") || !item["id"].is_string())
+      refuse_effect(model, "an entry without an id");
+    if (!item.contains("fit")) continue;
+    diagnosis::GivenEffect given;
+    given.effect = item["id"].get<std::string>();
+    if (item.contains("equation") && item["equation"].is_string())
+      given.form = item["equation"].get<std::string>();
+    given.shape = numbers_of(model, item["fit"], "shape");
+    given.coefficients = numbers_of(model, item["fit"], "coefficients");
+    if (given.coefficients.empty()) refuse_effect(model, "fit.coefficients is empty");
+    auto& colour = nominal.noise[place(diagnosis::Output::rate)];
+    if (given.effect == "rate_random_walk")
+      colour.walk = std::hypot(colour.walk, given.coefficients[0]);
+    else if (given.effect == "rate_flicker")
+      colour.flicker = std::hypot(colour.flicker, given.coefficients[0]);
+    else
+      nominal.effects.push_back(std::move(given));
+  }
+}
+
+}  // namespace
+
 diagnosis::NominalModel nominal_of(const recording::InstrumentModel& model,
                                    const recording::Recording& recording) {
   const auto need = [&](bool present, const char* part, const char* channel) {
@@ -261,6 +307,7 @@ diagnosis::NominalModel nominal_of(const recording::InstrumentModel& model,
     // One-sided density r / f of a walk: variance 2 pi^2 r^2 a second.
     nominal.noise[place(output)] = {found->second.flicker, found->second.random_walk * std::sqrt(2.0) * M_PI};
   }
+  take_effects(model, nominal);
   return nominal;
 }
 

@@ -144,6 +144,7 @@ Colour colour_of(Hypotheses& hypotheses, const std::vector<Member>& members, con
   const double within =
       alone.flicker / std::log(6.0) * std::log(std::max(1.0, static_cast<double>(space.block_rows())));
   colour.flicker = std::sqrt(variance + within);
+  colour.flicker_rthz = std::sqrt(alone.flicker / kFlickerPerProcess);
   colour.log_deviation =
       with_walk < with_flicker
           ? 0.5 * log_deviation(x, y, blocks, walk, &NoiseShape::walk)

@@ -11,6 +11,7 @@ struct Colour {
   double evidence = 0.0;           ///< gain in -2 log restricted likelihood over the stated colour
   double walk = 0.0;               ///< random walk per root second, unit of the output
   double flicker = 0.0;            ///< standard deviation of the 1/f part over the recording
+  double flicker_rthz = 0.0;       ///< the same as one-sided amplitude density at 1 Hz
   double log_deviation = 0.0;      ///< of the better one's logarithm
   double walk_over_flicker = 0.0;  ///< difference of their -2 log likelihoods, positive: walk is better
   /// What a single slow sinusoid beside the colour gains [-2 log likelihood], less its price: noise has none.

@@ -20,6 +20,9 @@ struct ColouredNoise {
   double total_variance() const { return white + variance.sum() + walk_step / 3.0; }
 };
 
+/// Variance of each process over h^2 of a one-sided density h^2 / f: ln 6 between processes a factor 6 apart.
+inline constexpr double kFlickerPerProcess = 1.791759469228055;
+
 /// Kinds of colour that an output's noise may have, in units of blocks.
 Eigen::VectorXd flicker_correlations(Eigen::Index blocks);
 double walk_correlation(Eigen::Index blocks);

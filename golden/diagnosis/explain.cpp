@@ -66,9 +66,12 @@ void explain(TelemetryDiagnosis& result, const SearchResult& found) {
         entry.near.emplace_back(h.families()[rival.member.family].effect, rival.gap);
     }
     entry.probability = 1.0 / (1.0 + rest);
-    const auto traces = family.columns(h.simulation(), result.members[i].shape);
-    entry.trace = summed(
-        traces, result.final.coefficients.segment(result.final.first[i], static_cast<Index>(traces.size())));
+    entry.shape = result.members[i].shape;
+    const auto traces = family.columns(h.simulation(), entry.shape);
+    const VectorXd c =
+        result.final.coefficients.segment(result.final.first[i], static_cast<Index>(traces.size()));
+    entry.coefficients.assign(c.begin(), c.end());
+    entry.trace = summed(traces, c);
     const auto disagreement = halves_disagree(h, result.members, i, result.final);
     const Output main = main_output(h, result.members[i], result.final, i);
     const bool better = std::ranges::any_of(result.improvement, [&](const Improvement& gain) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "golden/diagnosis/effect_family.hpp"
+
 namespace hemi::diagnosis {
 
 using Eigen::ArrayXd;
@@ -62,6 +64,28 @@ void fill_rate(Simulation& s) {
                   2.0 * b[9] * s.f * s.df;
 }
 
+// What each does is linear in its coefficients, on the run without any of them.
+void add_effects(Simulation& s) {
+  const auto families = effect_families(s);
+  std::vector<Trace> traces;
+  for (const GivenEffect& given : s.model.effects) {
+    const auto family = family_of(families, given.effect, given.form);
+    if (!family) continue;
+    const auto& c = given.coefficients;
+    if (given.shape.size() != families[*family].grid.front().size())
+      throw BadEffect(fmt::format("{}: fit.shape has {} numbers, its form {}", given.effect,
+                                  given.shape.size(), families[*family].grid.front().size()));
+    const auto columns = families[*family].columns(s, given.shape);
+    if (columns.size() != c.size())
+      throw BadEffect(fmt::format("{}: fit.coefficients has {} numbers, its form {}", given.effect, c.size(),
+                                  columns.size()));
+    traces.push_back(summed(columns, Eigen::VectorXd::Map(c.data(), static_cast<Eigen::Index>(c.size()))));
+  }
+  for (const Trace& trace : traces)
+    for (const Output output : kOutputs)
+      if (trace[output].size() > 0) s.nominal[output] += trace[output];
+}
+
 }  // namespace
 
 std::vector<Restart> restarts(const Telemetry& telemetry, double tau_s) {
@@ -116,6 +140,7 @@ Simulation simulate(const Telemetry& telemetry, const NominalModel& model, const
   s.nominal[Output::quadrature] =
       amplitude * model.quadrature_v.at(s.temperature_degc) + telemetry.trim_v.array();
   fill_rate(s);
+  if (!model.effects.empty()) add_effects(s);
   return s;
 }
 

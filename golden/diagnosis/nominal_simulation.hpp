@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,10 @@ struct Simulation {
   Trace thermal(const Eigen::ArrayXd& warmer) const;
   /// Change of all outputs when the true frequency is higher by `higher`.
   Trace frequency(const Eigen::ArrayXd& higher) const;
+};
+/// Thrown by simulate where a model's effect has not as many numbers as its form.
+struct BadEffect : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
 };
 Simulation simulate(const Telemetry& telemetry, const NominalModel& model, const Unsettled& unsettled = {});
 

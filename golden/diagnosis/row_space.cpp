@@ -10,8 +10,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-// One-sided density h^2 / f between processes a factor 6 apart in time: h^2 ln 6 each.
-constexpr double kFlickerPerProcess = 1.791759469228055;
 
 }  // namespace
 
@@ -82,14 +80,18 @@ Noise expected_noise(const Simulation& simulation, const RowSpace& space, const 
     own.white = std::pow(std::max(robust_deviation(std::move(steps)), 1e-300), 2);
     own.flicker = std::pow(simulation.model.noise[c].flicker, 2) * kFlickerPerProcess;
     own.walk = std::pow(simulation.model.noise[c].walk, 2) * block_s;
-    if (output != Output::frequency || !telemetry.has_case) continue;
-    const double tau = simulation.model.time_constant_s;
-    const double gain = -std::expm1(-telemetry.step_s / tau);
-    own.behind = simulation.frequency_per_degc.square().mean() * std::pow(case_noise_degc(telemetry), 2) *
-                 gain / (2.0 - gain);
-    own.behind_correlation = std::exp(-block_s / tau);
-    // Neighbouring blocks differ by the red part as well.
-    own.white = std::max(own.white - own.behind * (1.0 - own.behind_correlation), 0.1 * own.white);
+    // Neighbouring blocks differ by the red parts as well.
+    double red =
+        own.walk / 3.0 + own.flicker * (1.0 - flicker_correlations(space.block_count()).array()).sum();
+    if (output == Output::frequency && telemetry.has_case) {
+      const double tau = simulation.model.time_constant_s;
+      const double gain = -std::expm1(-telemetry.step_s / tau);
+      own.behind = simulation.frequency_per_degc.square().mean() * std::pow(case_noise_degc(telemetry), 2) *
+                   gain / (2.0 - gain);
+      own.behind_correlation = std::exp(-block_s / tau);
+      red += own.behind * (1.0 - own.behind_correlation);
+    }
+    own.white = std::max(own.white - red, 0.1 * own.white);
   }
   return noise;
 }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -47,7 +48,13 @@ struct Polynomial {
 /// Number of terms of the bias model, in the order 1, f, f^2, f^3, df, df^2, df^3, f*df, f^2*df, f*df^2.
 inline constexpr std::size_t kBiasTermCount = 10;
 
-/// All that the nominal simulation is told about one instrument: `hemi-model/1` without effects.
+/// An effect that a model has already: a form that the diagnosis knows, with its numbers.
+struct GivenEffect {
+  std::string effect, form;
+  std::vector<double> shape, coefficients;
+};
+
+/// All that the nominal simulation is told about one instrument: `hemi-model/1`.
 struct NominalModel {
   Polynomial frequency_hz;  ///< of the resonator's temperature [degC]
   double time_constant_s = 2000.0;
@@ -61,6 +68,9 @@ struct NominalModel {
     double flicker = 0.0, walk = 0.0;
   };
   std::array<Colour, kOutputs.size()> noise;
+  /// One whose form this recording cannot show (its input does not move or is not recorded) does nothing
+  /// here.
+  std::vector<GivenEffect> effects;
 };
 
 }  // namespace hemi::diagnosis

@@ -327,6 +327,7 @@ void Diagnosis::decide(TelemetryDiagnosis& result) {
     entry.probability = 1.0 / (1.0 + std::exp(-0.5 * std::abs(colour.walk_over_flicker)));
     const double value = walk ? colour.walk : colour.flicker;
     const double factor = std::exp(1.96 * colour.log_deviation);
+    entry.coefficients = {walk ? colour.walk : colour.flicker_rthz};
     entry.figures = {{{"density", walk ? "deg/h/sqrt(s)" : "deg/h", value}, value / factor, value * factor}};
     if (std::abs(colour.walk_over_flicker) < kNameMargin) {
       entry.near.emplace_back(walk ? "rate_flicker" : "rate_random_walk", std::abs(colour.walk_over_flicker));

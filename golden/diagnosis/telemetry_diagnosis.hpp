@@ -33,6 +33,9 @@ struct Explanation {
   std::string doubt;                                 ///< why it is not named; empty: it is
   std::vector<std::pair<std::string, double>> near;  ///< effects that cost less than the margin more: id, gap
   Trace trace;
+  /// Of the form (GivenEffect); of a colour its density at 1 Hz or its step per root second; empty for
+  /// events.
+  std::vector<double> shape, coefficients;
 };
 
 /// A parameter of the model, as given and as this recording has it.

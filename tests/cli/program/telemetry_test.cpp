@@ -211,6 +211,32 @@ TEST_F(DiagnoseTelemetry, NothingIsNamedOnNothingWhateverIsMissing) {
   }
 }
 
+TEST_F(DiagnoseTelemetry, TheCorrectedModelIsConsistentWithAnotherRunAndKeepsItsEffect) {
+  Recipe recipe{.duffing = 1e-6};
+  expect_effects(diagnosed(telemetry(recipe), 1), {"duffing"});
+  recipe.seed = 2;
+  recording::write_csv(path("other.csv"), telemetry(recipe));
+  outcome_ = hemi({"diagnose", "other.csv", "--model", "out/corrected.model.json", "-o", "again"});
+  EXPECT_EQ(outcome_.code, 0) << outcome_.out << outcome_.err;
+  expect_effects(recording::read_json_object(path("again/diagnosis.json")), {});
+  const Json corrected = recording::read_json_object(path("again/corrected.model.json"));
+  ASSERT_EQ(corrected["effects"].size(), 1U);
+  EXPECT_EQ(corrected["effects"][0]["id"], "duffing");
+}
+
+TEST_F(DiagnoseTelemetry, AnEffectWithNumbersThatItsFormHasNotIsRefused) {
+  diagnosed(telemetry({.duffing = 1e-6}), 1);
+  for (const char* bad :
+       {R"({"shape": [], "coefficients": [1.0, 2.0]})", R"({"shape": [3.0], "coefficients": [1.0]})",
+        R"({"shape": [], "coefficients": "many"})", R"({"coefficients": [1.0]})", "7"}) {
+    Json model = recording::read_json_object(path("out/corrected.model.json"));
+    model["effects"][0]["fit"] = Json::parse(bad);
+    file("bad.model.json", model.dump());
+    expect_bad({"diagnose", "run.csv", "--model", "bad.model.json", "-o", "bad"},
+               {"bad.model.json", "effects", "as hemi diagnose wrote it"});
+  }
+}
+
 TEST_F(DiagnoseTelemetry, WithoutAnyThermometer) {
   auto run = telemetry(kNothing);
   for (const char* channel : {"case_temp_degc", "frequency_hz"}) remove(run, channel);

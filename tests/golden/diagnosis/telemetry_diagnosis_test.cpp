@@ -57,6 +57,35 @@ TEST(TelemetryDiagnosis, NamesHysteresis) {
   EXPECT_EQ(result.named[0].effect, "thermal_hysteresis");
 }
 
+NominalModel with_names(const TelemetryDiagnosis& result) {
+  NominalModel model = result.corrected;
+  for (const auto& entry : result.named)
+    model.effects.push_back({entry.effect, entry.form, entry.shape, entry.coefficients});
+  return model;
+}
+
+// Fitted on one run, consistent on another; and what is given is taken, not looked for again: without the
+// effect the same model is wrong.
+TEST(TelemetryDiagnosis, AModelThatHasTheEffectIsConsistentWithAnotherRun) {
+  const NominalModel corrected = with_names(diagnosed({.seed = 31, .duffing = 2e-7}));
+  ASSERT_EQ(corrected.effects.size(), 1U);
+  EXPECT_EQ(diagnose_telemetry(tests::telemetry({.seed = 32, .duffing = 2e-7}), corrected).verdict,
+            Verdict::consistent);
+  const auto without = diagnose_telemetry(tests::telemetry({.seed = 33}), corrected);
+  ASSERT_EQ(without.named.size(), 1U);
+  EXPECT_EQ(without.named[0].effect, "duffing");
+  EXPECT_NEAR(without.named[0].coefficients.at(0) / -corrected.effects[0].coefficients.at(0), 1.0, 0.1);
+}
+
+TEST(TelemetryDiagnosis, AModelsEffectWithOtherNumbersThanItsFormIsRefused) {
+  NominalModel model = with_names(diagnosed({.seed = 31, .duffing = 2e-7}));
+  model.effects.at(0).coefficients.push_back(1.0);
+  EXPECT_THROW(diagnose_telemetry(tests::telemetry({.seed = 32}), model), BadEffect);
+  model.effects[0].coefficients.pop_back();
+  model.effects[0].shape.push_back(1.0);
+  EXPECT_THROW(diagnose_telemetry(tests::telemetry({.seed = 32}), model), BadEffect);
+}
+
 // The case went on along its curve while nothing was recorded: no effect, but a resonator that is elsewhere.
 TEST(TelemetryDiagnosis, APowerCutAloneIsConsistent) {
   for (const std::uint64_t seed : {71U, 72U}) {
