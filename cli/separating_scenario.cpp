@@ -64,12 +64,12 @@ Json listed_in_json(const std::vector<ExpectedGap>& gaps) {
 
 std::string experiment_sentence(const diagnosis::SeparatingExperiment& found) {
   if (!found.experiment)
-    return fmt::format("nothing tried separates {} (expected score gaps; 10 would name one)",
-                       listed(found.inseparable, "{} from {} ({:.1f})"));
+    return fmt::format("nothing tried separates {} (expected score gaps; {:g} would name one)",
+                       listed(found.inseparable, "{} from {} ({:.1f})"), diagnosis::kNameMargin);
   std::string text = fmt::format("{}: expected score gaps {}", found.experiment->in_words(),
                                  listed(found.gaps, "{} against {} {:.0f}"));
   if (!found.enough)
-    text += fmt::format(" (the most that was found; {:.0f} would be safe)", diagnosis::kEnoughGap);
+    text += fmt::format(" (the most that was found; {:.0f} would be safe)", diagnosis::enough_gap());
   if (!found.inseparable.empty())
     text += fmt::format("; nothing tried separates {}", listed(found.inseparable, "{} from {} ({:.1f})"));
   return text;

@@ -71,8 +71,7 @@ const Pattern& pattern(Stimulus stimulus) {
   return patterns.at(stimulus);
 }
 
-// Case to board: the lag that leaves least, and the rise beside it. To 1 %, or a board that follows the
-// resonator would seem to go its own way.
+// Case to board: the lag that leaves least, and the rise beside it.
 void fit_board(const Telemetry& t, Stand& stand) {
   const auto rest = [&](double tau_s) -> ArrayXd {
     return t.board_degc.array() - lag(t.case_degc, t.step_s, tau_s, t.case_degc[0]);
@@ -88,7 +87,7 @@ void fit_board(const Telemetry& t, Stand& stand) {
       best = tau_s;
     }
   if (best > 0.0) {
-    constexpr int kBits = 10;
+    constexpr int kBits = 16;
     best = boost::math::tools::brent_find_minima(left, best / kLagRatio, best * kLagRatio, kBits).first;
   }
   stand.board_lag_s = best;

@@ -8,6 +8,15 @@ namespace hemi::diagnosis {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+// Zero for a column of zeros: a prior on it must not overflow.
+VectorXd inverse(const VectorXd& size) {
+  return (size.array() > 0.0).select(size.cwiseInverse(), 0.0);
+}
+
+}  // namespace
+
 ScaledNormal::ScaledNormal(VectorXd scale, const MatrixXd& products, const VectorXd& prior, double ridge)
     : scale_(std::move(scale)) {
   MatrixXd normal = scale_.asDiagonal() * products * scale_.asDiagonal();
@@ -17,12 +26,11 @@ ScaledNormal::ScaledNormal(VectorXd scale, const MatrixXd& products, const Vecto
 }
 
 ScaledNormal::ScaledNormal(const MatrixXd& columns, const VectorXd& prior, double ridge)
-    : ScaledNormal(columns.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse(),
-                   columns.transpose() * columns, prior, ridge) {}
+    : ScaledNormal(inverse(columns.colwise().norm()), columns.transpose() * columns, prior, ridge) {}
 
 ScaledNormal ScaledNormal::of_products(const MatrixXd& products, double ridge) {
-  return {products.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse(), products,
-          VectorXd::Zero(products.rows()), ridge};
+  return {inverse(products.diagonal().cwiseMax(0.0).cwiseSqrt()), products, VectorXd::Zero(products.rows()),
+          ridge};
 }
 
 MatrixXd ScaledNormal::solve(const MatrixXd& right) const {

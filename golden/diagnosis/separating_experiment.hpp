@@ -4,42 +4,23 @@
 #include <functional>
 #include <optional>
 
-#include "golden/diagnosis/alternatives.hpp"
-#include "golden/diagnosis/experiment.hpp"
+#include "golden/diagnosis/expected_gaps.hpp"
 
 namespace hemi::diagnosis {
 
-/// Expected score gap: how much worse the best fit of `rival` would be than that of `truth`, if an experiment
-/// were carried out on an instrument with `truth`. Rival empty: nothing left out at all.
-struct ExpectedGap {
-  std::string truth, rival;
-  double gap = 0.0;
-  bool alternative = false;  ///< the rival is one of the diagnosis's own alternatives
-};
+/// Standard deviations (a gap g scatters by 2 sqrt(g)) by which a gap has to leave kNameMargin: in 99 of 100
+/// runs it then does.
+inline constexpr double kSureBy = 2.3263478740408408;
 
-/// Expected gaps of all truths of all sets against every effect of the catalogue that the experiment could
-/// show.
-///
-///     gap = min over rival's forms, shapes, strengths and the nominal model's parameters of |L (y - y_r)|^2
-///           + price of the rival - price of the truth,   y the noise-free outputs with the truth at work
-///
-/// L whitens by the noise that the recording had (white parts by the length of a row, the thermometer's by
-/// f'(T) of the new run); prices are the diagnosis's own; the truth is two standard errors weaker than
-/// fitted.
-std::vector<ExpectedGap> expected_gaps(const Experiment& experiment, const Stand& stand,
-                                       const NominalModel& model, const TelemetryDiagnosis& diagnosis,
-                                       const std::vector<AlternativeSet>& sets);
-
-/// A gap that leaves kNameMargin with a probability of 99 % where forms are exact (a gap g scatters by 2
-/// sqrt(g): g = 39), doubled since they are not.
-inline constexpr double kEnoughGap = 78.0;
+/// Gap g with g - kSureBy 2 sqrt(g) = kNameMargin where forms are exact (39.2), doubled since they are not.
+double enough_gap();
 
 struct SeparatingExperiment {
   std::optional<Experiment> experiment;  ///< none: nothing tried separates any pair
   Stand stand;
   std::vector<ExpectedGap> gaps;         ///< between alternatives, in this experiment
   std::vector<ExpectedGap> inseparable;  ///< pairs of alternatives that nothing tried separates; largest gaps
-  bool enough = false;                   ///< every one of `gaps` is kEnoughGap at least
+  bool enough = false;                   ///< every one of `gaps` is enough_gap() at least
   std::size_t tried = 0;
 };
 
