@@ -126,7 +126,7 @@ int prove_all(const ProveOptions& options, const std::vector<prove::Task>& tasks
   prove::Report report;
   for (const auto& one : trials) {  // in the order of the tasks, so that jobs do not change the report
     score.add(one.truth, one.answer);
-    if (one.resolved) score.add_experiment(*one.resolved);
+    if (one.experiment) score.add_experiment(one.truth, *one.experiment);
     for (const auto& [method, answer] : one.rivals) report.rivals[method].add(one.truth, answer);
   }
   report.command = fmt::format("hemi prove --cases {} --seed {}{}", options.cases, options.seed,

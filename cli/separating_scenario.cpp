@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "cli/recording/error.hpp"
@@ -21,6 +22,7 @@ using diagnosis::Stimulus;
 using recording::Json;
 
 constexpr double kStep_s = 1.0;  // an input takes a sample to reach its new value
+constexpr double kWarm_s = 1e5;
 
 std::string pairs(const std::vector<Corner>& corners) {
   std::string text = "[";
@@ -43,6 +45,11 @@ std::string section(const Experiment& experiment, const Stand& stand, Stimulus s
     profile.push_back({corner.time_s + kStep_s, corner.value});
   }
   return fmt::format("\n[{}]\nprofile = {}\n", name, pairs(profile));
+}
+
+bool about(const diagnosis::SeparatingExperiment& found, const char* effect) {
+  const auto is_it = [&](const ExpectedGap& gap) { return gap.truth == effect || gap.rival == effect; };
+  return std::ranges::any_of(found.gaps, is_it);
 }
 
 std::string listed(const std::vector<ExpectedGap>& gaps, const char* format_each) {
@@ -87,7 +94,11 @@ std::string scenario_text(const diagnosis::SeparatingExperiment& found, const st
       model, s.case_time_constant_s, s.board_rise_degc, s.heater_time_constant_s);
   text += fmt::format("\n[chamber]\nprofile = {}\n", pairs(e.chamber_degc));
   text += section(e, s, Stimulus::rate, "table", "rate_dph", 0.0);
-  text += section(e, s, Stimulus::supply, "supply", "supply_v", 5.0);
+  std::string supply = section(e, s, Stimulus::supply, "supply", "supply_v", 5.0);
+  // Warm before the run, as the search has it; but what warms up after power-on shows only there.
+  if (!about(found, "self_heating"))
+    supply = (supply.empty() ? "\n[supply]\n" : supply) + fmt::format("power_on = {:g}\n", -kWarm_s);
+  text += supply;
   text += section(e, s, Stimulus::attitude, "attitude", "accel_g", 0.0);
   text += section(e, s, Stimulus::amplitude, "amplitude", "setpoint", 1.0);
   text += section(e, s, Stimulus::trim, "quadrature", "trim_v", 0.0);

@@ -16,6 +16,7 @@ namespace fs = std::filesystem;
 using concealed::Series;
 
 constexpr Eigen::Index kShortest_s = 1800;
+constexpr Eigen::Index kAtStart_s = 60;
 
 /// One value a second: means over the samples of each, the last value where there is none.
 Series each_second(const std::vector<double>& time_s, const std::vector<double>& values,
@@ -61,7 +62,8 @@ std::string proposed_scenario(const std::string& answer_directory) {
   return {};
 }
 
-std::optional<concealed::Excitation> inputs_of(const std::string& recording_path, double lag_s) {
+std::optional<concealed::Excitation> inputs_of(const std::string& recording_path,
+                                               const concealed::Instrument& unit) {
   const auto file = recording::read_recording(recording_path);
   const auto* time = file.find("time_s");
   if (time == nullptr || file.find("case_temp_degc") == nullptr) return std::nullopt;
@@ -78,9 +80,12 @@ std::optional<concealed::Excitation> inputs_of(const std::string& recording_path
   in.program = "proposed";
   in.time_s = Series::LinSpaced(seconds, 0.0, static_cast<double>(seconds - 1));
   in.case_degc = smoothed(series("case_temp_degc", 20.0), 30);
-  in.case_ahead_degc = concealed::later(in.case_degc, 0.5 - lag_s);
-  in.board_degc = file.find("board_temp_degc") == nullptr ? Series(in.case_degc + 5.0)
-                                                          : smoothed(series("board_temp_degc", 25.0), 30);
+  in.case_ahead_degc = concealed::later(in.case_degc, 0.5 - unit.nuisance.lag_s);
+  in.board_degc = concealed::lagged(in.case_degc, unit.board_lag_s, in.case_degc[0]) + unit.board_rise_degc;
+  if (file.find("board_temp_degc") != nullptr) {
+    const Series over_case = smoothed(series("board_temp_degc", 25.0), 30) - in.case_degc;
+    in.board_degc += over_case - over_case.head(kAtStart_s).mean();
+  }
   in.rate_in_dph = series("rate_in_dph", 0.0);
   in.accel_g = series("accel_g", 0.0);
   const Series supply = series("supply_v", 150.0);

@@ -13,10 +13,13 @@ namespace hemi::prove {
 /// its first alternative that has one, relative to the answer's directory. Empty where there is none.
 std::string proposed_scenario(const std::string& answer_directory);
 
-/// The inputs of a recorded run as a run of the writer's own, averaged to one-second steps where they are
-/// finer: the case thermometer smoothed over a minute, the supply in units of its first value times 150 V.
-/// Nothing where the file lacks the case thermometer or is shorter than half an hour. InputError.
-std::optional<concealed::Excitation> inputs_of(const std::string& recording_path, double lag_s);
+/// The inputs of a recorded run as a run of one of the writer's own instruments, averaged to one-second steps
+/// where they are finer: the case thermometer smoothed over a minute, the supply in units of its first value
+/// times 150 V. The board is the instrument's: its lag and rise over this case, and what the run's own board
+/// has moved by against its case since the start (a heater). Nothing where the file lacks the case
+/// thermometer or is shorter than half an hour. InputError.
+std::optional<concealed::Excitation> inputs_of(const std::string& recording_path,
+                                               const concealed::Instrument& unit);
 
 }  // namespace hemi::prove
 

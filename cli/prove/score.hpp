@@ -33,11 +33,15 @@ bool right(const Truth& truth, const Answer& answer, std::string& why);
 /// candidates.
 bool right_first(const Truth& truth, const Answer& answer);
 
+/// Whether the experiment of a poor run has told the truth from its rivals: the effect in question named, no
+/// other but what was there. Where it is one of two that no recording tells apart, those two alone left over.
+bool resolves(const Truth& truth, const Answer& answer);
+
 class Score {
  public:
   void add(const Truth& truth, const Answer& answer);
-  /// An ambiguity's proposed experiment was carried out.
-  void add_experiment(bool resolved) { experiments_.add(resolved); }
+  /// An ambiguity's proposed experiment was carried out; what is said of it.
+  void add_experiment(const Truth& truth, const Answer& answer);
   std::vector<Row> rows() const;
   const std::vector<Failure>& failures() const { return failures_; }
   /// Truth's label -> what was said -> count.

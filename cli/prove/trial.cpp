@@ -54,26 +54,25 @@ bool separable(const Truth& truth) {
 }
 
 /// Carries out what an ambiguous answer proposes.
-std::optional<bool> resolve(const concealed::Case& hidden, const std::string& stem, const Truth& truth,
-                            const TrialOptions& options) {
+std::optional<Answer> carry_out(const concealed::Case& hidden, const std::string& stem,
+                                const TrialOptions& options) {
   const std::string scenario = proposed_scenario(stem + ".diagnosis");
   if (scenario.empty()) return std::nullopt;
   const std::string run = stem + ".experiment";
   fs::create_directories(run);
   const ChildResult simulated =
       run_child(options.program, {"simulate", scenario, "-o", run}, run + "/log", options.limits);
-  if (!simulated.failure.empty()) return false;
+  Answer none;
+  none.failure = simulated.failure.empty() ? "the experiment has no inputs" : simulated.failure;
+  if (!simulated.failure.empty()) return none;
   for (const auto& entry : fs::directory_iterator(run)) {
     if (entry.path().extension() != ".csv") continue;
-    const auto inputs = inputs_of(entry.path().string(), hidden.unit.nuisance.lag_s);
-    if (!inputs) return false;
+    const auto inputs = inputs_of(entry.path().string(), hidden.unit);
+    if (!inputs) return none;
     write_concealed(concealed::repeat_case(hidden, *inputs), run, "again");
-    const Answer answer = diagnose(run + "/again", options);
-    const auto names = answer.names();
-    return answer.verdict == "named" && !names.empty() &&
-           std::all_of(names.begin(), names.end(), [&](const auto& id) { return truth.holds(id); });
+    return diagnose(run + "/again", options);
   }
-  return false;
+  return none;
 }
 
 /// Everything that this trial left under its name.
@@ -85,7 +84,7 @@ void tidy(const std::string& stem) {
 void keep(const std::string& stem, const Task& task, const recording::Json& truth,
           const std::string& directory) {
   const fs::path target(directory);
-  for (const char* part : {".csv", ".json", ".model.json", ".log", ".diagnosis"}) {
+  for (const char* part : {".csv", ".json", ".model.json", ".log", ".diagnosis", ".experiment"}) {
     const fs::path from(stem + part), to = target / (task.name + part);
     if (!fs::exists(from)) continue;
     fs::remove_all(to);
@@ -131,7 +130,7 @@ Trial run_trial(const Task& task, const TrialOptions& options) {
   trial.truth = parse_truth(truth);
   if (options.own_program && task.cls == "poor" && separable(trial.truth)) {
     std::string why;
-    if (right(trial.truth, trial.answer, why)) trial.resolved = resolve(hidden, stem, trial.truth, options);
+    if (right(trial.truth, trial.answer, why)) trial.experiment = carry_out(hidden, stem, options);
   }
   if (!options.keep.empty()) keep(stem, task, truth, options.keep);
   tidy(stem);

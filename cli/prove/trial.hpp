@@ -39,9 +39,9 @@ struct Trial {
   Truth truth{};
   Answer answer{};
   std::map<std::string, Answer> rivals{};  ///< by method
-  /// Of an ambiguous answer whose set holds the truth and that proposes an experiment: whether the diagnosis
-  /// of the same instrument in that experiment names the truth and nothing else.
-  std::optional<bool> resolved{};
+  /// Of an ambiguous answer whose set holds the truth and that proposes an experiment: what is said of the
+  /// same instrument in that experiment.
+  std::optional<Answer> experiment{};
 };
 
 Trial run_trial(const Task& task, const TrialOptions& options);

@@ -246,12 +246,14 @@ Case repeat_case(const Case& first, const Excitation& inputs) {
   build.stand.unit = first.unit;
   build.stand.in = inputs;
   read_thermometer(random, build.stand);
+  const State sizing = simulate(first.unit.model, first.in, first.unit.nuisance.start_offset_degc);
   build.result.stated = first.stated;
   build.result.colour_stated = first.colour_stated;
   for (std::size_t i = 0; i < first.again.size(); ++i) {
     Random same = first.again[i].before;
-    const Form form =
-        kind(first.again[i].id).draw({same, inputs, build.stand.unit.model, build.stand.baseline});
+    const Setting where_drawn{same, first.in, first.unit.model, sizing};
+    const Form form = kind(first.again[i].id)
+                          .draw({same, inputs, build.stand.unit.model, build.stand.baseline, &where_drawn});
     build.result.effects.push_back(first.effects[i]);
     build.effects.push_back(form.at(first.again[i].strength));
   }

@@ -76,7 +76,7 @@ struct Case {
 Case make_case(const std::string& cls, std::uint64_t seed, std::uint64_t index);
 
 /// The same instrument and effects in a run with other inputs, one value a second; fresh noise. Forms that
-/// are scaled to a run (loop height, total, span) are scaled to the new one.
+/// are scaled to a run (loop height, total, span) keep the size and shape that they had in the first.
 Case repeat_case(const Case& first, const Excitation& inputs);
 
 }  // namespace hemi::concealed

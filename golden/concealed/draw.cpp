@@ -66,7 +66,8 @@ Stand random_stand(Random& random, const std::string& program, unsigned stimuli,
     stand.unit.nuisance.case_step_degc = case_step_degc;
     stand.unit.nuisance.case_noise_degc = random.uniform(0.3, 1.0) * case_step_degc;
   }
-  stand.in = random_excitation(random, stand.unit, program, stimuli, board_is_resonator);
+  if (board_is_resonator) stand.unit.board_lag_s = stand.unit.model.time_constant_s;
+  stand.in = random_excitation(random, stand.unit, program, stimuli);
   read_thermometer(random, stand);
   return stand;
 }

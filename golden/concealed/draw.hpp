@@ -22,6 +22,8 @@ struct Stand {
 Series rounded(const Series& values, double step);
 
 /// A run of `program` with an instrument of its own; its case thermometer is read and rounded.
+/// `board_is_resonator`: the board lags as the resonator does, so that without a load of its own the two
+/// cannot be told apart.
 Stand random_stand(Random& random, const std::string& program, unsigned stimuli,
                    bool board_is_resonator = false, double case_step_degc = 0.0);
 

@@ -30,15 +30,20 @@ std::shared_ptr<const Effect> adding(Stage stage, int output, const Series& shap
   return acting(stage, [=](State& s) { s.output(output) += strength * shape; });
 }
 
-Series beyond_polynomial(const Series& values, const Series& x, std::size_t order) {
-  const double centre = x.mean(), half = std::max((x - centre).abs().maxCoeff(), 1e-9);
-  const Series scaled = (x - centre) / half;
-  Eigen::MatrixXd powers(x.size(), static_cast<Eigen::Index>(order) + 1);
-  powers.col(0).setOnes();
-  for (Eigen::Index k = 1; k < powers.cols(); ++k) powers.col(k) = powers.col(k - 1).array() * scaled;
-  const Eigen::VectorXd fit = powers.householderQr().solve(values.matrix());
-  const Series rest = values - (powers * fit).array();
-  return rest / std::max(rest.maxCoeff() - rest.minCoeff(), 1e-300);
+Sized beyond_polynomial(const Sized& values, const Sized& x, std::size_t order) {
+  const double centre = x.first.mean(), half = std::max((x.first - centre).abs().maxCoeff(), 1e-9);
+  const auto powers = [&](const Series& at) {
+    const Series scaled = (at - centre) / half;
+    Eigen::MatrixXd all(at.size(), static_cast<Eigen::Index>(order) + 1);
+    all.col(0).setOnes();
+    for (Eigen::Index k = 1; k < all.cols(); ++k) all.col(k) = all.col(k - 1).array() * scaled;
+    return all;
+  };
+  const Eigen::MatrixXd first = powers(x.first);
+  const Eigen::VectorXd fit = first.householderQr().solve(values.first.matrix());
+  const Series rest = values.first - (first * fit).array();
+  const double height = std::max(rest.maxCoeff() - rest.minCoeff(), 1e-300);
+  return {(values.here - (powers(x.here) * fit).array()) / height, rest / height};
 }
 
 const std::vector<Kind>& catalogue_kinds() {

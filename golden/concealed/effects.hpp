@@ -35,7 +35,10 @@ struct Setting {
   Random& random;
   const Excitation& in;
   const Model& model;
-  const State& baseline;  ///< the same run without effects
+  const State& baseline;           ///< the same run without effects
+  const Setting* first = nullptr;  ///< the run whose ranges size the form; none: this one
+
+  const Setting& sizing() const { return first != nullptr ? *first : *this; }
 };
 
 struct Kind {
@@ -64,7 +67,13 @@ std::shared_ptr<const Effect> acting(Stage stage, std::function<void(State&)> ac
 /// Adds strength * shape to an output at a stage.
 std::shared_ptr<const Effect> adding(Stage stage, int output, const Series& shape, double strength);
 
-/// `values` less their least-squares polynomial in x, then divided by their peak-to-peak value.
-Series beyond_polynomial(const Series& values, const Series& x, std::size_t order);
+/// A series, and what the run that sizes a form has in its place.
+struct Sized {
+  Series here{}, first{};
+};
+
+/// `values` less the least-squares polynomial in x, then divided by the peak-to-peak value of the rest;
+/// polynomial and size of the first run.
+Sized beyond_polynomial(const Sized& values, const Sized& x, std::size_t order);
 
 }  // namespace hemi::concealed

@@ -30,15 +30,18 @@ Form gas_leak(const Setting& in) {
 
 /// Thermoelastic or activated loss: a peak in temperature, less what the nominal polynomial takes of it.
 Form damping_peak(const Setting& in) {
-  const Series& shell = in.baseline.shell_degc;
-  const double low = shell.minCoeff(), high = shell.maxCoeff();
+  const Sized shell{in.baseline.shell_degc, in.sizing().baseline.shell_degc};
+  const double low = shell.first.minCoeff(), high = shell.first.maxCoeff();
   const double centre = in.random.uniform(low + 0.2 * (high - low), high - 0.2 * (high - low));
   const double width = in.random.uniform(0.1, 0.3) * std::max(high - low, 1.0);
   const bool activated = in.random.chance(0.5);
-  const Series x = (shell - centre) / width;
-  const Series bump = activated ? Series(1.0 / x.cosh()) : Series(1.0 - x.tanh().square());
-  Series shape = beyond_polynomial(bump, shell, in.model.drive_v.size() - 1);
-  shape /= std::max(shape.abs().maxCoeff(), 1e-9);
+  const auto bump = [&](const Series& degc) -> Series {
+    const Series x = (degc - centre) / width;
+    return activated ? Series(1.0 / x.cosh()) : Series(1.0 - x.tanh().square());
+  };
+  const Sized rest =
+      beyond_polynomial({bump(shell.here), bump(shell.first)}, shell, in.model.drive_v.size() - 1);
+  const Series shape = rest.here / std::max(rest.first.abs().maxCoeff(), 1e-9);
   return scaled_drive(activated ? "activated loss" : "squared hyperbolic tangent", shape, 0.02, 1.0, "peak");
 }
 
@@ -73,24 +76,32 @@ Form pickoff_gain(const Setting& in) {
 
 Form split(const Setting& in) {
   Form form;
-  const Series& shell = in.baseline.shell_degc;
-  const double centre = shell.mean(), half = std::max(0.5 * (shell.maxCoeff() - shell.minCoeff()), 0.5);
-  const Series x = (shell - centre) / half;
-  Series bend;
+  const Sized shell{in.baseline.shell_degc, in.sizing().baseline.shell_degc};
+  const double centre = shell.first.mean();
+  const double half = std::max(0.5 * (shell.first.maxCoeff() - shell.first.minCoeff()), 0.5);
+  const Sized x{(shell.here - centre) / half, (shell.first - centre) / half};
+  std::function<Series(const Series&)> bend;
   switch (in.random.index(3)) {
     case 0:
       form.name = "axis turns with temperature";
-      bend = (in.random.uniform(1.5, 3.5) * x + in.random.uniform(0.0, 3.0)).sin();
+      bend = [turn = in.random.uniform(1.5, 3.5), from = in.random.uniform(0.0, 3.0)](const Series& at) {
+        return Series((turn * at + from).sin());
+      };
       break;
     case 1:
       form.name = "saturating strain";
-      bend = (in.random.uniform(2.0, 6.0) * (x - in.random.uniform(-0.4, 0.4))).atan();
+      bend = [steep = in.random.uniform(2.0, 6.0), from = in.random.uniform(-0.4, 0.4)](const Series& at) {
+        return Series((steep * (at - from)).atan());
+      };
       break;
     default:
       form.name = "exponential in temperature";
-      bend = (in.random.sign() * in.random.uniform(1.5, 3.0) * x).exp();
+      bend = [steep = in.random.sign() * in.random.uniform(1.5, 3.0)](const Series& at) {
+        return Series((steep * at).exp());
+      };
   }
-  const Series shape = beyond_polynomial(bend, shell, in.model.quadrature_v.size() - 1);
+  const Series shape =
+      beyond_polynomial({bend(x.here), bend(x.first)}, shell, in.model.quadrature_v.size() - 1).here;
   form.high = 0.05;
   form.sign = in.random.sign();
   form.at = [shape](double span_v) { return adding(Stage::kQuadrature, kQuadrature, shape, span_v); };

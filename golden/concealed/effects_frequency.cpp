@@ -24,30 +24,35 @@ Form quartic(const Setting& in) {
   return form;
 }
 
-/// 0 at the start, 1 at the end, concave; the last form hardly bends.
-Series ageing_shape(Random& random, const Series& time_s, std::string& name) {
-  const double end_s = time_s[time_s.size() - 1];
+/// 0 at the start, 1 at the end of the run that sizes it, concave; the last form hardly bends.
+Series ageing_shape(const Setting& in, std::string& name) {
+  Random& random = in.random;
+  const Series &time_s = in.in.time_s, &first_s = in.sizing().in.time_s;
+  const double end_s = first_s[first_s.size() - 1];
   const double t0_s = end_s * random.uniform(0.1, 0.6);
-  Series shape;
+  std::function<Series(const Series&)> shape;
   switch (random.index(3)) {
     case 0:
       name = "logarithmic";
-      shape = (1.0 + time_s / t0_s).log();
+      shape = [=](const Series& t) -> Series { return (1.0 + t / t0_s).log(); };
       break;
     case 1:
       name = "stretched exponential";
-      shape = 1.0 - (-(time_s / t0_s).pow(0.7)).exp();
+      shape = [=](const Series& t) -> Series { return 1.0 - (-(t / t0_s).pow(0.7)).exp(); };
       break;
     default:
       name = "power law";
-      shape = ((time_s + 60.0) / end_s).pow(random.uniform(0.3, 0.8));
+      shape = [end_s, power = random.uniform(0.3, 0.8)](const Series& t) -> Series {
+        return ((t + 60.0) / end_s).pow(power);
+      };
   }
-  return (shape - shape[0]) / (shape[shape.size() - 1] - shape[0]);
+  const Series first = shape(first_s);
+  return (shape(time_s) - first[0]) / (first[first.size() - 1] - first[0]);
 }
 
 Form ageing(const Setting& in) {
   Form form;
-  const Series shape = ageing_shape(in.random, in.in.time_s, form.name);
+  const Series shape = ageing_shape(in, form.name);
   form.high = 0.022;
   form.sign = in.random.sign();
   form.at = [shape](double total_hz) { return adding(Stage::kFrequency, kFrequency, shape, total_hz); };
@@ -78,27 +83,28 @@ Form softening(const Setting& in) {
   return scaled_frequency("spring of the field", 1.0 - v.square(), 2e-4, 1.0, "relative_shift");
 }
 
-/// Peak to peak 1 over the board temperatures of the run.
+/// Peak to peak 1 over the board temperatures of the run that sizes it.
 Series oscillator_shape(const Setting& in, std::string& name) {
   Random& random = in.random;
-  const Series board = in.in.board_degc;
   const double turn_degc = random.uniform(15.0, 35.0);
-  const Series x = (board - turn_degc) / 30.0;
-  Series y;
+  std::function<Series(const Series&)> y;
   switch (random.index(3)) {
     case 0:
       name = "tuning fork";
-      y = -x.square();
+      y = [](const Series& x) -> Series { return -x.square(); };
       break;
     case 1:
       name = "AT cut";
-      y = x * random.uniform(-1.0, 0.4) + x.cube();
+      y = [linear = random.uniform(-1.0, 0.4)](const Series& x) -> Series { return x * linear + x.cube(); };
       break;
     default:
       name = "compensated crystal";
-      y = (2.2 * x + random.uniform(0.0, 1.0)).sin() - 1.6 * x + 0.3 * x.cube();
+      y = [phase = random.uniform(0.0, 1.0)](const Series& x) -> Series {
+        return (2.2 * x + phase).sin() - 1.6 * x + 0.3 * x.cube();
+      };
   }
-  return y / std::max(y.maxCoeff() - y.minCoeff(), 1e-9);
+  const Series first = y((in.sizing().in.board_degc - turn_degc) / 30.0);
+  return y((in.in.board_degc - turn_degc) / 30.0) / std::max(first.maxCoeff() - first.minCoeff(), 1e-9);
 }
 
 Form oscillator_temperature(const Setting& in) {

@@ -100,19 +100,19 @@ Form gradient(const Setting& in) {
 Form hysteresis(const Setting& in) {
   Form form;
   Series memory;
-  const Series& shell = in.baseline.shell_degc;
+  const Series &shell = in.baseline.shell_degc, &first = in.sizing().baseline.shell_degc;
   switch (in.random.index(3)) {
     case 0:
       form.name = "Preisach";
-      memory = preisach(shell, in.random.uniform(0.1, 0.5), in.random.uniform(0.1, 0.3));
+      memory = preisach(shell, first, in.random.uniform(0.1, 0.5), in.random.uniform(0.1, 0.3));
       break;
     case 1:
       form.name = "Duhem";
-      memory = duhem(shell, in.random.uniform(1.5, 8.0));
+      memory = duhem(shell, first, in.random.uniform(1.5, 8.0));
       break;
     default:
       form.name = "Bouc-Wen";
-      memory = bouc_wen(shell, in.random.uniform(1.5, 6.0), in.random.uniform(0.55, 0.9));
+      memory = bouc_wen(shell, first, in.random.uniform(1.5, 6.0), in.random.uniform(0.55, 0.9));
   }
   form.high = 2.0;
   form.sign = in.random.sign();

@@ -6,15 +6,17 @@
 namespace hemi::concealed {
 namespace {
 
-Series to_unit_range(const Series& x) {
-  const double low = x.minCoeff(), high = x.maxCoeff();
-  return (x - 0.5 * (low + high)) / std::max(0.5 * (high - low), 1e-9);
-}
-
-Series to_unit_height(Series y) {
-  const double height = y.maxCoeff() - y.minCoeff();
-  if (height < 1e-12) return Series::Zero(y.size());
-  return (y - y.mean()) / height;
+/// The operator over x in units of the first run's half range, in units of its height there.
+template <typename Operator>
+Series sized(const Series& x, const Series& first, const Operator& memory) {
+  const double low = first.minCoeff(), high = first.maxCoeff();
+  const auto scaled = [&](const Series& at) -> Series {
+    return (at - 0.5 * (low + high)) / std::max(0.5 * (high - low), 1e-9);
+  };
+  const Series there = memory(scaled(first));
+  const double height = there.maxCoeff() - there.minCoeff();
+  if (height < 1e-12) return Series::Zero(x.size());
+  return (memory(scaled(x)) - there.mean()) / height;
 }
 
 struct Relay {
@@ -37,15 +39,12 @@ std::vector<Relay> relays(double width, double spread, double start) {
   return all;
 }
 
-}  // namespace
-
-Series preisach(const Series& x, double width, double spread) {
-  const Series u = to_unit_range(x);
+Series relayed(const Series& u, double width, double spread) {
   auto all = relays(width, spread, u[0]);
   double sum = 0.0;
   for (const Relay& relay : all) sum += relay.high ? relay.weight : -relay.weight;
-  Series y(x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
+  Series y(u.size());
+  for (Eigen::Index i = 0; i < u.size(); ++i) {
     for (Relay& relay : all) {
       if (!relay.high && u[i] >= relay.up) {
         relay.high = true;
@@ -57,36 +56,48 @@ Series preisach(const Series& x, double width, double spread) {
     }
     y[i] = sum;
   }
-  return to_unit_height(y);
+  return y;
 }
 
-Series duhem(const Series& x, double c) {
-  const Series u = to_unit_range(x);
-  Series y(x.size());
+Series duhem_of(const Series& u, double c) {
+  Series y(u.size());
   double state = y[0] = 0.0;
-  for (Eigen::Index i = 1; i < x.size(); ++i) {
+  for (Eigen::Index i = 1; i < u.size(); ++i) {
     const double step = u[i] - u[i - 1];
     const double towards = step < 0.0 ? -1.0 : 1.0;
     state = towards + (state - towards) * std::exp(-c * std::abs(step));  // exact for a monotonic step
     y[i] = state;
   }
-  return to_unit_height(y);
+  return y;
 }
 
-Series bouc_wen(const Series& x, double c, double b) {
-  const Series u = to_unit_range(x);
+Series bouc_wen_of(const Series& u, double c, double b) {
   const auto slope_of = [&](double z, double step) {
     return c * (step - (b * std::abs(step) * z * std::abs(z) + (1.0 - b) * step * z * z));
   };
-  Series y(x.size());
+  Series y(u.size());
   double z = y[0] = 0.0;
-  for (Eigen::Index i = 1; i < x.size(); ++i) {
+  for (Eigen::Index i = 1; i < u.size(); ++i) {
     const double step = u[i] - u[i - 1];
     const double half = z + 0.5 * slope_of(z, step);
     z += slope_of(half, step);
     y[i] = z;
   }
-  return to_unit_height(y);
+  return y;
+}
+
+}  // namespace
+
+Series preisach(const Series& x, const Series& first, double width, double spread) {
+  return sized(x, first, [=](const Series& u) { return relayed(u, width, spread); });
+}
+
+Series duhem(const Series& x, const Series& first, double c) {
+  return sized(x, first, [=](const Series& u) { return duhem_of(u, c); });
+}
+
+Series bouc_wen(const Series& x, const Series& first, double c, double b) {
+  return sized(x, first, [=](const Series& u) { return bouc_wen_of(u, c, b); });
 }
 
 }  // namespace hemi::concealed

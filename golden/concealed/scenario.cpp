@@ -142,9 +142,7 @@ Series power_cuts(Random& random, Eigen::Index count) {
   return power;
 }
 
-Series board(Random& random, const Instrument& unit, const Excitation& in, bool is_resonator) {
-  if (is_resonator)
-    return lagged(in.case_degc, unit.model.time_constant_s, in.case_degc[0]) + unit.board_rise_degc;
+Series board(Random& random, const Instrument& unit, const Excitation& in) {
   Series air = in.case_degc;
   if ((in.stimuli & kBoardLoad) != 0u) {
     air +=
@@ -183,7 +181,7 @@ Series lagged(const Series& input, double time_constant_s, double start) {
 }
 
 Excitation random_excitation(Random& random, const Instrument& unit, const std::string& program,
-                             unsigned stimuli, bool board_is_resonator) {
+                             unsigned stimuli) {
   Excitation in;
   in.program = program;
   in.stimuli = stimuli;
@@ -194,7 +192,7 @@ Excitation random_excitation(Random& random, const Instrument& unit, const std::
   in.case_degc =
       lagged(lagged(air, random.uniform(150.0, 500.0), kRoom_degc), random.uniform(20.0, 80.0), kRoom_degc);
   in.case_ahead_degc = later(in.case_degc, 0.5 - unit.nuisance.lag_s);
-  in.board_degc = board(random, unit, in, board_is_resonator);
+  in.board_degc = board(random, unit, in);
   const bool turn = (stimuli & kTurn) != 0u, tumble = (stimuli & kTumble) != 0u;
   in.rate_in_dph =
       !turn ? Series::Zero(count)

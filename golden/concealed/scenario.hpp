@@ -42,10 +42,8 @@ struct Excitation {
 };
 
 /// A chamber run of 5 to 10 h; `program` is one of the names above, `stimuli` a set of Stimulus.
-/// `board_is_resonator`: the board lags as the resonator does and has no load, for recordings in which the
-/// two cannot be told apart.
 Excitation random_excitation(Random& random, const Instrument& unit, const std::string& program,
-                             unsigned stimuli, bool board_is_resonator = false);
+                             unsigned stimuli);
 
 /// The series read `seconds` later (negative: earlier), straight lines between samples and for at
 /// most one second beyond the ends.

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kStimulusEffort_s = 3600.0;
 constexpr double kShareOfReach = 0.7;  // asked of pairs that no experiment separates by enough_gap()
-constexpr std::size_t kRichest = 4;
+constexpr std::size_t kRichest = 3;
 constexpr std::size_t kNearest = 4;
 constexpr double kSameLag = 0.02;
 

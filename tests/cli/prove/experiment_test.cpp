@@ -39,7 +39,7 @@ TEST_F(Experiment, GivesTheSameInstrumentAndEffectAnotherRun) {
   drawn_case.again = {{drawn->truth.id, drawn->before, drawn->truth.strength}};
   const auto first = concealed::repeat_case(drawn_case, stand.in);
   write_concealed(first, path("."), "one");
-  const auto inputs = inputs_of(path("one.csv"), first.unit.nuisance.lag_s);
+  const auto inputs = inputs_of(path("one.csv"), first.unit);
   ASSERT_TRUE(inputs);
   EXPECT_LT((inputs->case_degc - first.in.case_degc.head(inputs->case_degc.size())).abs().maxCoeff(), 0.1);
   EXPECT_LT((inputs->amplitude - first.in.amplitude.head(inputs->amplitude.size())).abs().maxCoeff(), 1e-3);
@@ -57,7 +57,7 @@ TEST_F(Experiment, OfAFewMinutesIsNone) {
   file << "time_s,case_temp_degc,frequency_hz\n";
   for (int i = 0; i < 300; ++i) file << i << ",20,4432\n";
   file.close();
-  EXPECT_FALSE(inputs_of(path("short.csv"), 0.0));
+  EXPECT_FALSE(inputs_of(path("short.csv"), {}));
 }
 
 }  // namespace

@@ -66,6 +66,27 @@ TEST(Score, NamesOneAfterAnother) {
   EXPECT_FALSE(right_first(twin, says("ambiguous", {}, {"gas_leak", "self_heating"})));
 }
 
+TEST(Score, AnExperimentResolvesWhereItNamesTheEffectInQuestion) {
+  const Truth one = truth("poor", {"gas_leak", "forcer_misalignment"});
+  EXPECT_TRUE(resolves(one, says("named", {"gas_leak", "forcer_misalignment"})));
+  EXPECT_TRUE(resolves(one, says("named", {"forcer_misalignment"})));
+  EXPECT_FALSE(resolves(one, says("named", {"gas_leak"})));  // which was no question
+  EXPECT_FALSE(resolves(one, says("named", {"forcer_misalignment", "duffing"})));
+  EXPECT_FALSE(resolves(one, says("ambiguous", {}, {"forcer_misalignment", "damping_anisotropy"})));
+  EXPECT_FALSE(resolves(one, says("unknown", {"unknown"})));
+  // One clock leaves the two ageings together; a third must be gone.
+  const Truth aged = truth("poor", {"frequency_ageing"});
+  EXPECT_TRUE(resolves(aged, says("ambiguous", {}, {"oscillator_ageing", "frequency_ageing"})));
+  EXPECT_FALSE(
+      resolves(aged, says("ambiguous", {}, {"oscillator_ageing", "frequency_ageing", "self_heating"})));
+  EXPECT_FALSE(resolves(aged, says("ambiguous", {}, {"oscillator_ageing", "self_heating"})));
+  Score score;
+  score.add_experiment(one, says("named", {"forcer_misalignment"}));
+  score.add_experiment(one, says("named", {"gas_leak"}));
+  EXPECT_DOUBLE_EQ(row(score, "experiment").value, 0.5);
+  EXPECT_EQ(score.failures().size(), 1u);
+}
+
 TEST(Score, JudgesEachClassByItsOwnRule) {
   EXPECT_TRUE(is_right(truth("weak", {"duffing"}), says("consistent")));
   EXPECT_FALSE(is_right(truth("weak", {"duffing"}), says("named", {"duffing"})));

@@ -86,6 +86,17 @@ TEST_F(InputsOverTime, StepsHoldAndJump) {
   EXPECT_EQ(s.inputs.at(0.0).power_on_s, -3600.0);
 }
 
+TEST_F(InputsOverTime, AHeaterOnTheBoardHeatsOnly) {
+  EXPECT_EQ(read("[scenario]\nduration = 30\n").inputs.at(5.0).board_heater_degc, 0.0);
+  EXPECT_EQ(read("[scenario]\nduration = 30\n[board]\nheater_degc = 10\n").inputs.at(5.0).board_heater_degc,
+            10.0);
+  const Scenario s = read("[scenario]\nduration = 30\n[board]\nsteps = [[10, 5]]\n");
+  EXPECT_EQ(s.inputs.at(9.999).board_heater_degc, 0.0);
+  EXPECT_EQ(s.inputs.at(10.0).board_heater_degc, 5.0);
+  expect_refused("[scenario]\nduration = 30\n[board]\nheater_degc = -1\n", 4, {"heater_degc"});
+  expect_refused("[scenario]\nduration = 30\n[board]\nheater = 1\n", 4, {"heater"});
+}
+
 TEST_F(InputsOverTime, Sine) {
   const Scenario s = read(
       "[scenario]\nduration = 30\n[table]\nsine = {amplitude = \"10 deg/s\", frequency = 0.25, offset = "

@@ -54,6 +54,24 @@ TEST_F(Slow, NoNoiseNoScatter) {
   }
 }
 
+// A heater's share of the board's temperature comes behind the board's time constant, T = 300 s:
+// 10 (1 - exp(-t / T)) after a step of 10 degC; case and resonator stay where they were.
+TEST_F(Slow, AHeaterWarmsTheBoardAlone) {
+  const std::string text =
+      "[scenario]\nduration = 1200\nnoise = false\n[instrument]\nboard_time_constant_s = 300\n";
+  const auto cold = run(text), warm = run(text + "[board]\nsteps = [[600, 10]]\n");
+  const auto& board = warm.find("board_temp_degc")->values;
+  const auto& before = cold.find("board_temp_degc")->values;
+  for (std::size_t i = 0; i < board.size(); ++i) {
+    const double since_s = static_cast<double>(i) - 600.0;
+    const double expected = since_s < 0.0 ? 0.0 : 10.0 * -std::expm1(-since_s / 300.0);
+    // A sample stands for the second around its time, in which the board moves by 10 / 300 degC at most.
+    ASSERT_NEAR(board[i] - before[i], expected, 10.0 / 300.0) << i;
+  }
+  for (const char* name : {"case_temp_degc", "frequency_hz"})
+    EXPECT_EQ(warm.find(name)->values, cold.find(name)->values) << name;
+}
+
 // The model's densities are those of the recording. In samples of dt white noise of density w has the
 // variance w^2 / (2 dt), and differences (v[i] - v[i-1]) / dt of white v, of density d f at low frequencies,
 // have d^2 / (4 pi^2 dt^3). N such differences tell their deviation to sqrt(1.5 / (2 N)). The rebalance loop,

@@ -152,5 +152,42 @@ TEST(PickoffGain, ScalesTheRateWithTheDrive) {
   EXPECT_LT((drive * (1.0 + 1e-4 * (stand.in.board_degc - 25.0)) - 1.0).abs().maxCoeff(), 1e-12);
 }
 
+/// Forms that are sized by a run's ranges.
+class SizedKind : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(SizedKind, IsTheSameInstrumentInAnotherRun) {
+  // Half of a run as a run of its own: what the effect does in it is what it did in that half.
+  const Kind& one = kind(GetParam());
+  for (std::uint64_t draw = 0; draw < 6; ++draw) {
+    Random random(5, one.id, draw);
+    const Stand whole = random_stand(random, "multispeed", 0);
+    const Eigen::Index rows = whole.in.time_s.size() / 2;
+    Excitation in = whole.in;
+    for (Series* series : {&in.time_s, &in.case_degc, &in.case_ahead_degc, &in.board_degc, &in.rate_in_dph,
+                           &in.accel_g, &in.supply_v, &in.trim_v, &in.amplitude, &in.power})
+      *series = Series(series->head(rows));
+    const Model& model = whole.unit.model;
+    const double offset = whole.unit.nuisance.start_offset_degc;
+    const State baseline = simulate(model, in, offset);
+    Random again = random;
+    const Setting first{random, whole.in, model, whole.baseline};
+    const Form there = one.draw(first), here = one.draw({again, in, model, baseline, &first});
+    const State a = simulate(model, whole.in, offset, {there.at(there.high)});
+    const State b = simulate(model, in, offset, {here.at(here.high)});
+    for (int output = 0; output < kOutputs; ++output) {
+      const Series effect = a.output(output) - whole.baseline.output(output);
+      // Slopes have one neighbour less at the end of a run.
+      const Series difference = (a.output(output).head(rows) - b.output(output)).head(rows - 2);
+      EXPECT_LE(difference.abs().maxCoeff(),
+                1e-9 * (effect.abs().maxCoeff() + a.output(output).abs().maxCoeff()))
+          << one.id << " " << there.name << " " << output;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SizedKind,
+                         ::testing::Values("thermal_hysteresis", "oscillator_temperature", "frequency_ageing",
+                                           "damping_temperature", "frequency_split"));
+
 }  // namespace
 }  // namespace hemi::concealed

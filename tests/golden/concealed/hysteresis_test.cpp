@@ -25,11 +25,11 @@ class Memory : public ::testing::TestWithParam<int> {
   static Series run(const Series& x) {
     switch (GetParam()) {
       case 0:
-        return preisach(x, 0.3, 0.2);
+        return preisach(x, x, 0.3, 0.2);
       case 1:
-        return duhem(x, 4.0);
+        return duhem(x, x, 4.0);
       default:
-        return bouc_wen(x, 3.0, 0.7);
+        return bouc_wen(x, x, 3.0, 0.7);
     }
   }
 };
