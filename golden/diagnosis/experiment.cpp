@@ -157,8 +157,6 @@ std::vector<Experiment> chamber_programs(const Stand& s) {
   const double far = near == s.low_degc ? s.high_degc : s.low_degc;
   const auto begin = [&](const std::string& words) { return Course(words, s.start_degc); };
   const std::string range = fmt::format("between {:g} and {:g} degC", s.low_degc, s.high_degc);
-  for (const double hours : {1.0, 2.0, 4.0, 8.0})
-    all.push_back(begin(fmt::format("hold at {:g} degC", s.start_degc)).hold(hours).done());
   // Everything at least twice: what comes once cannot be predicted from the rest.
   for (const double hours : {0.5, 1.0}) {
     Course course = begin(
