@@ -46,9 +46,9 @@ Stand stand_of(const Telemetry& telemetry, const NominalModel& model);
 /// Value that an input rests at, and in words what is stepped by how much.
 double rest_value(Stimulus stimulus, const Stand& stand);
 
-/// Chamber programs of up to ten hours: steps and cycles, twice each; cycles at three speeds with minor loops.
-/// None stays at one temperature: a run that leaves the model's own polynomials free tells too little of what
-/// is not in them.
+/// Chamber programs of up to ten hours: steps and cycles, twice each; cycles at three speeds with minor
+/// loops. None stays at one temperature: a run that leaves the model's own polynomials free tells too little
+/// of what is not in them.
 std::vector<Experiment> chamber_programs(const Stand& stand);
 
 /// The experiment with stimuli added, each with a dwell of its own, so that no two are collinear.

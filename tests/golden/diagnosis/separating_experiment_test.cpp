@@ -237,7 +237,7 @@ TEST(SeparatingExperiment, ScaleFactorAndBiasAreToldByTurningWithoutThem) {
 TEST(SeparatingExperiment, ABoardThatFollowsTheResonatorIsHeated) {
   const std::vector<std::string> set = {"frequency_polynomial_order", "oscillator_temperature"};
   Stand like_resonator = stand();
-  like_resonator.board_lag_s = tests::nominal().time_constant_s;
+  like_resonator.board_lag_s = 1.01 * tests::nominal().time_constant_s;
   const auto run = inputs_of(cycles(), like_resonator, 1.0);
   const auto d = ambiguous(diagnose_telemetry(carried_out(run, quartic(-1e-7), 6), tests::nominal()), set);
   ASSERT_EQ(d.ambiguous.size(), 1U);
