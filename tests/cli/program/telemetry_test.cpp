@@ -232,7 +232,7 @@ TEST_F(DiagnoseTelemetry, AnEffectWithNumbersThatItsFormHasNotIsRefused) {
     Json model = recording::read_json_object(path("out/corrected.model.json"));
     model["effects"][0]["fit"] = Json::parse(bad);
     file("bad.model.json", model.dump());
-    expect_bad({"diagnose", "run.csv", "--model", "bad.model.json", "-o", "bad"},
+    expect_bad({"diagnose", "run.csv", "--model", "bad.model.json", "-o", "out"},
                {"bad.model.json", "effects", "as hemi diagnose wrote it"});
   }
 }
