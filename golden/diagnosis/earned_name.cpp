@@ -28,6 +28,8 @@ constexpr double kNormal95 = 1.959963984540054;
 constexpr double kDetectable = 5.0;
 constexpr double kShapeStep = 0.01;
 constexpr double kFarthestForm = 0.5;
+constexpr double kShapeReach = 0.3;        // deviation of a shape's logarithm that a linear step can take
+constexpr double kFarthestNuisance = 4.0;  // deviations of its prior
 
 // Baseline, members' columns, then what a hundredth of each shape parameter changes, per unit of its log.
 struct Extended {
@@ -95,7 +97,9 @@ struct LeftOut {
   VectorXd white;
 };
 
-// Where the resonator began is the run's state, not a parameter: it is carried through as `whole` has it.
+// Where the resonator began is the run's state, not a parameter: it is carried through as `whole` has it, as
+// far as a nuisance can be (a lag of many samples is none). `whole` ends with the coefficients: the rest are
+// shapes, and the step along them is linear.
 LeftOut left_out(const Hypotheses& h, const Reduced& all, const Noise& noise, const VectorXd& whole) {
   const RowSpace& space = h.space();
   std::vector<Index> state, free;
@@ -103,7 +107,16 @@ LeftOut left_out(const Hypotheses& h, const Reduced& all, const Noise& noise, co
     const auto k = static_cast<std::size_t>(j);
     (k < h.baseline().size() && h.baseline()[k].nuisance ? state : free).push_back(j);
   }
-  const VectorXd at = whole(state);
+  VectorXd at = whole(state);
+  for (Index i = 0; i < at.size(); ++i) {
+    const double deviation =
+        h.baseline()[static_cast<std::size_t>(state[static_cast<std::size_t>(i)])].prior_sd;
+    if (deviation > 0.0)
+      at[i] = std::clamp(at[i], -kFarthestNuisance * deviation, kFarthestNuisance * deviation);
+  }
+  VectorXd prior = VectorXd::Zero(static_cast<Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i)
+    if (free[i] >= whole.size()) prior[static_cast<Index>(i)] = 1.0 / (kShapeReach * kShapeReach);
   Reduced design, data = h.data();
   for (std::size_t k = 0; k < all.size(); ++k) {
     design[k] = all[k](Eigen::all, free);
@@ -117,8 +130,7 @@ LeftOut left_out(const Hypotheses& h, const Reduced& all, const Noise& noise, co
     const auto kept = rows_where(numbers, [&](Index block) { return fold_of(space, block) != fold; });
     const auto out = rows_where(numbers, [&](Index block) { return fold_of(space, block) == fold; });
     const MatrixXd rest = white(kept, Eigen::all);
-    const VectorXd c =
-        ScaledNormal(rest, VectorXd::Zero(rest.cols())).solve(rest.transpose() * VectorXd(y(kept)));
+    const VectorXd c = ScaledNormal(rest, prior).solve(rest.transpose() * VectorXd(y(kept)));
     result.white(out) -= white(out, Eigen::all) * c;
     for (const Output output : kOutputs) {
       const std::size_t k = place(output);
@@ -169,6 +181,20 @@ std::vector<Improvement> improvements(Hypotheses& h, const std::vector<Member>& 
     list.push_back(entry);
   }
   return list;
+}
+
+Gain gain_left_out(Hypotheses& h, const std::vector<Member>& members, const HypothesisFit& fit,
+                   std::size_t which, Output output) {
+  std::vector<Member> others = members;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
+  const HypothesisFit rest = h.fit(others, fit.noise);
+  const VectorXd before = left_out(h, extended(h, others, rest).rows, fit.noise, rest.coefficients).white;
+  const VectorXd after = left_out(h, extended(h, members, fit).rows, fit.noise, fit.coefficients).white;
+  Index first = 0;
+  for (std::size_t k = 0; k < place(output); ++k) first += h.space().rows(kOutputs[k]);
+  const Index rows = h.space().rows(output);
+  return bootstrap_gain(before.segment(first, rows), after.segment(first, rows),
+                        even_blocks(rows, kInnovations), 13);
 }
 
 std::vector<std::vector<Interval>> intervals(Hypotheses& h, const std::vector<Member>& members,

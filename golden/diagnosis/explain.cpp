@@ -13,6 +13,9 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
+// [units of the score] What is worth this much is there, also where two of its numbers stand in for each
+// other.
+constexpr double kUndoubted = 100.0;
 constexpr double kTemper = 2.0;  // forms are not exact: differences count half
 constexpr double kAgree = 5.0;   // deviations between halves
 
@@ -75,13 +78,14 @@ void explain(TelemetryDiagnosis& result, const SearchResult& found) {
     const auto disagreement = halves_disagree(h, result.members, i, result.final);
     const Output main = main_output(h, result.members[i], result.final, i);
     const bool better = std::ranges::any_of(result.improvement, [&](const Improvement& gain) {
-      return gain.output == main && gain.held_out_white.low > 0.0;
+      if (gain.output != main || gain.held_out_white.low <= 0.0) return false;
+      return result.members.size() == 1 || gain_left_out(h, result.members, result.final, i, main).low > 0.0;
     });
     if (result.members.size() > 1 && gain_beside_forms(h, result.members, result.final, i) <
                                          kWorth + EffectSearch(h).penalty(result.members[i])) {
       entry.doubt = "the others' equations may be inexact by as much";
       entry.near.clear();
-    } else if (undetermined(entry))
+    } else if (undetermined(entry) && entry.worth < kUndoubted)
       entry.doubt = "its size is not determined beside what equations may be inexact by";
     else if (!entry.near.empty())
       entry.doubt = "other effects explain the recording as well";
