@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Golden model against the engine that this program is linked with, which may be mutated. Prints what the
 // scoreboard says and, found by comparing complete traces, what it should say: "BLOCK WORD SAMPLE" twice.
+// Argument: sample pairs in a thirty-second of the capture, 1000 if there is none.
 #include <fmt/format.h>
 
 #include <string>
@@ -45,16 +46,17 @@ std::string by_traces(const Trace& a, const Trace& b, std::uint64_t samples) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  const std::size_t unit = argc > 1 ? std::stoul(argv[1]) : 1000;
   // Short enough for a slow engine, long enough for lock, hold-over, loss of lock by a jump of frequency, two
   // windows of df/dt and a gap.
   std::mt19937_64 generator(31);
   std::vector<tb::SamplePair> pairs;
-  tests::append(pairs, tests::Stretch::tone, 24000, false, 4425.0, 3.0, generator);
-  tests::append(pairs, tests::Stretch::silence, 1000, false, 4425.0, 0.5, generator);
-  tests::append(pairs, tests::Stretch::overdriven, 3000, false, 4425.0, 0.5, generator);
-  tests::append(pairs, tests::Stretch::tone, 4000, false, 4475.0, 3.0, generator);
-  pairs[9000].gap = true;
+  tests::append(pairs, tests::Stretch::tone, 24 * unit, false, 4425.0, 3.0, generator);
+  tests::append(pairs, tests::Stretch::silence, unit, false, 4425.0, 0.5, generator);
+  tests::append(pairs, tests::Stretch::overdriven, 3 * unit, false, 4425.0, 0.5, generator);
+  tests::append(pairs, tests::Stretch::tone, 4 * unit, false, 4475.0, 3.0, generator);
+  pairs[9 * unit].gap = true;
   auto values = tests::busy_control(tests::busy_registers(false, 4420.0));
   values[config::reg_log2_block] = 0;
   values[config::reg_lock_count] = 60;
