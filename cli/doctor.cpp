@@ -39,7 +39,7 @@ struct Tool {
 constexpr Tool tools[] = {
     {"verilator", "--version", "building: rtl/ as a C++ model", "apt install verilator"},
     {"iverilog", "-V", "tests: rtl/ and the netlist in a second simulator", "apt install iverilog"},
-    {"yosys", "-V", "scripts/area, scripts/synth: area, formal proofs", "apt install yosys"},
+    {"yosys", "-V", "scripts/synth: area, formal proofs", "apt install yosys"},
     {"nextpnr-ice40", "--version", "scripts/synth up5k, hx8k: place and route, clock",
      "apt install nextpnr-ice40"},
     {"icepack", "", "scripts/synth up5k --board: the bit stream", "apt install fpga-icestorm"},

@@ -96,6 +96,9 @@ def build(options, name, texts, pairs):
          "-Wno-lint", "-Wno-style", "-Wno-MULTITOP", "--prefix", options.prefix, "--top-module", options.top, "-Mdir", work / "model",
          "-DNO_ICE40_DEFAULT_ASSIGNMENTS", f"-I{options.include}", "-MAKEFLAGS", "OPT_FAST=-O1", *files, cells],
         work / "verilator.log")
+    # What the test was compiled with must be what it is linked with.
+    if (work / "model" / f"{options.prefix}.h").read_text() != options.header.read_text():
+        sys.exit(f"netlist_blocks: {options.header} is another model's")
     model = work / "model" / f"{options.prefix}__ALL.a"
     program = work / "test"
     run([options.compiler, *options.objects, model, "-Wl,--start-group", *options.libraries, model, "-Wl,--end-group",
@@ -122,6 +125,7 @@ def main():
     for name in ("sources", "objects", "libraries", "arguments", "skip"):
         parser.add_argument(f"--{name}", type=lambda text: text.split(",") if text else [], default=[])
     parser.add_argument("--blocks", type=pathlib.Path, required=True, help="file with a module a line")
+    parser.add_argument("--header", type=pathlib.Path, required=True, help="of the model that the test was compiled with")
     parser.add_argument("--work", type=pathlib.Path, required=True)
     options = parser.parse_args()
     shutil.rmtree(options.work, ignore_errors=True)
