@@ -90,11 +90,14 @@ def build(options, name, texts, pairs):
             source = work / f"{module}.sv"
             source.write_text(f"{body}\n{pairs[module]}\n{texts[module]}")
         files.append(source)
-    cells = pathlib.Path(shutil.which(options.yosys)).parent.parent / "share/yosys/ice40/cells_sim.v"
+    cells = (pathlib.Path(shutil.which(options.yosys)).parent.parent / "share/yosys/ice40/cells_sim.v").read_text()
+    for model in options.models:  # Yosys' own of that name is an empty box
+        cells = re.sub(rf"^module {pathlib.Path(model).stem}\b", r"\g<0>_EMPTY", cells, flags=re.M)
+    (work / "cells.v").write_text(cells)
     # Neither the netlists nor Yosys' cell models are written for our warnings.
     run([options.verilator, "--cc", "--build", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert", "-Wno-fatal",
          "-Wno-lint", "-Wno-style", "-Wno-MULTITOP", "--prefix", options.prefix, "--top-module", options.top, "-Mdir", work / "model",
-         "-DNO_ICE40_DEFAULT_ASSIGNMENTS", f"-I{options.include}", "-MAKEFLAGS", "OPT_FAST=-O1", *files, cells],
+         "-DNO_ICE40_DEFAULT_ASSIGNMENTS", f"-I{options.include}", "-MAKEFLAGS", "OPT_FAST=-O1", *files, *options.models, work / "cells.v"],
         work / "verilator.log")
     # What the test was compiled with must be what it is linked with.
     if (work / "model" / f"{options.prefix}.h").read_text() != options.header.read_text():
@@ -122,7 +125,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     for name in ("compiler", "yosys", "verilator", "include", "prefix", "top", "clock"):
         parser.add_argument(f"--{name}", required=True)
-    for name in ("sources", "objects", "libraries", "arguments", "skip"):
+    for name in ("sources", "models", "objects", "libraries", "arguments", "skip"):
         parser.add_argument(f"--{name}", type=lambda text: text.split(",") if text else [], default=[])
     parser.add_argument("--blocks", type=pathlib.Path, required=True, help="file with a module a line")
     parser.add_argument("--header", type=pathlib.Path, required=True, help="of the model that the test was compiled with")
