@@ -26,7 +26,8 @@ BY_OUTPUTS = ["hemi_quantiser"]
 EQUIVALENCE = ("equiv_make gold gate equiv; hierarchy -top equiv; opt_clean; equiv_simple; equiv_induct; equiv_status -assert",
                r"Of those cells (\d+) are proven and \d+ are unproven")
 INDUCTION = ("miter -equiv -flatten gold gate miter; hierarchy -top miter; proc; opt_clean; "
-             "sat -verify -seq 1 -prove trigger 0 -tempinduct -maxsteps 3 miter", r"Induction step proven|model found|maximum number of time steps")
+             "sat -verify -seq 1 -prove trigger 0 -tempinduct -maxsteps 3 miter",
+             r"Induction step proven|model found|maximum number of time steps")
 # Equal wherever the text's signals are defined; with two values alone the induction fails.
 DEFINED = ["hemi_link_sender"]
 # No proof, but netlist_blocks.py simulates them: products and memories alone.
