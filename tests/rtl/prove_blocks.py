@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 # Modules that a block is cut from on both sides: their inputs must be equal, their outputs are any. They are products
-# (two arrangements of partial products, which no solver here tells equal at 16 bits), memories (words of which have no
+# (two arrangements of partial products: a proof grows beyond measure with the width), memories (words of which have no
 # name in common with a block RAM), or have a proof of their own.
 CUT = {
     "hemi_datapath": ["hemi_multiplier", "hemi_nco_table", "hemi_quantiser"],
