@@ -65,10 +65,14 @@ void add_commands(std::vector<EffectFamily>& families, const Telemetry& t) {
   if (!t.has(Output::quadrature)) return;
   add("demodulation_phase", "rate += g quadrature",
       [](const Simulation& s) { return command(s, Output::quadrature); });
-  if (t.has_board && moves(t.board_degc, 0.5))
-    add("demodulation_phase", "rate += g (Tb - 25) quadrature", [](const Simulation& s) -> ArrayXd {
-      return command(s, Output::quadrature) * (s.board_degc - 25.0);
-    });
+  if (!t.has_board || !moves(t.board_degc, 0.5)) return;
+  const Column follows = [](const Simulation& s) -> ArrayXd {
+    return command(s, Output::quadrature) * (s.board_degc - 25.0);
+  };
+  add("demodulation_phase", "rate += g (Tb - 25) quadrature", follows);
+  families.push_back(in_rate("demodulation_phase", "rate += (g + b (Tb - 25)) quadrature",
+                             {[](const Simulation& s) { return command(s, Output::quadrature); }, follows}));
+  name_figure(families.back(), "gain", "deg/h per V");
 }
 
 void add_turning(std::vector<EffectFamily>& families) {
@@ -76,6 +80,11 @@ void add_turning(std::vector<EffectFamily>& families) {
   families.push_back(
       in_rate("scale_factor_temperature", "rate += s (T - 20) W",
               {[=](const Simulation& s) -> ArrayXd { return rate(s) * (s.smooth_degc - 20.0); }}));
+  name_figure(families.back(), "per_degc", "1/degC");
+  families.push_back(
+      in_rate("scale_factor_temperature", "rate += (s (T - 20) + s2 (T - 20)^2) W",
+              {[=](const Simulation& s) -> ArrayXd { return rate(s) * (s.smooth_degc - 20.0); },
+               [=](const Simulation& s) -> ArrayXd { return rate(s) * (s.smooth_degc - 20.0).square(); }}));
   name_figure(families.back(), "per_degc", "1/degC");
   const Column square = [=](const Simulation& s) -> ArrayXd { return rate(s).square() / kFullRate_dph; };
   const Column cube = [=](const Simulation& s) -> ArrayXd {
