@@ -1,15 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DOUTPUT=assets.cpp -DFOLDER=... -DUPLOT=.../dist -P embed.cmake: files into string constants.
+# cmake -DOUTPUT=assets.cpp -DFOLDER=... -DUPLOT=.../dist -P embed.cmake: files into string constants. The parts of
+# the page's script share one scope.
 set(text "// Made by cli/report/embed.cmake.\n#include \"cli/report/assets.hpp\"\n\nnamespace hemi::report::assets {\n")
-foreach(pair IN ITEMS uplot_js|${UPLOT}/uPlot.iife.min.js uplot_css|${UPLOT}/uPlot.min.css page_js|${FOLDER}/page.js page_css|${FOLDER}/page.css)
+function(add_constant name content)
+  if(content MATCHES "</script|</style|\\)hemi\"")
+    message(FATAL_ERROR "${name} holds a text that would end the element or the constant it stands in")
+  endif()
+  set(text "${text}const std::string_view ${name} = R\"hemi(${content})hemi\";\n" PARENT_SCOPE)
+endfunction()
+
+foreach(pair IN ITEMS uplot_js|${UPLOT}/uPlot.iife.min.js uplot_css|${UPLOT}/uPlot.min.css page_css|${FOLDER}/page.css)
   string(REPLACE "|" ";" pair "${pair}")
   list(GET pair 0 name)
   list(GET pair 1 file)
   file(READ "${file}" content)
-  if(content MATCHES "</script|</style|\\)hemi\"")
-    message(FATAL_ERROR "${file} holds a text that would end the element or the constant it stands in")
-  endif()
-  string(APPEND text "const std::string_view ${name} = R\"hemi(${content})hemi\";\n")
+  add_constant(${name} "${content}")
 endforeach()
+set(script "\"use strict\";\n(() => {\n")
+foreach(part IN ITEMS base numbers view draw tip plot main)
+  file(READ "${FOLDER}/page/${part}.js" content)
+  string(APPEND script "${content}")
+endforeach()
+add_constant(page_js "${script}})();\n")
 string(APPEND text "}  // namespace hemi::report::assets\n")
 file(WRITE "${OUTPUT}" "${text}")
