@@ -5,18 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "cli/recording/stored_text.hpp"
+
 namespace hemi::recording {
 namespace {
-
-Json text_value(const std::string& text) {
-  const bool structured =
-      text.starts_with('{') || text.starts_with('[') || text == "true" || text == "false" || text == "null";
-  if (structured) {
-    Json parsed = Json::parse(text, nullptr, false);
-    if (!parsed.is_discarded()) return parsed;
-  }
-  return text;
-}
 
 Json read_text(hid_t attribute, hid_t type) {
   const Hdf5Handle memory(H5Tcopy(H5T_C_S1), H5Tclose);
@@ -39,26 +31,6 @@ Json read_text(hid_t attribute, hid_t type) {
 extern "C" herr_t collect_attribute(hid_t, const char* name, const H5A_info_t*, void* names) {
   static_cast<std::vector<std::string>*>(names)->emplace_back(name);
   return 0;
-}
-
-// One code point as UTF-8.
-void append_utf8(std::string& out, std::uint32_t code) {
-  const auto byte = [&out](std::uint32_t value) { out += static_cast<char>(value); };
-  if (code < 0x80) {
-    byte(code);
-  } else if (code < 0x800) {
-    byte(0xC0 | code >> 6);
-    byte(0x80 | (code & 0x3F));
-  } else if (code < 0x10000) {
-    byte(0xE0 | code >> 12);
-    byte(0x80 | (code >> 6 & 0x3F));
-    byte(0x80 | (code & 0x3F));
-  } else {
-    byte(0xF0 | code >> 18);
-    byte(0x80 | (code >> 12 & 0x3F));
-    byte(0x80 | (code >> 6 & 0x3F));
-    byte(0x80 | (code & 0x3F));
-  }
 }
 
 }  // namespace
@@ -136,16 +108,9 @@ std::string matlab_text(hid_t dataset) {
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
   const auto count = std::max<hssize_t>(H5Sget_simple_extent_npoints(space), 0);
   std::vector<std::uint16_t> units(static_cast<std::size_t>(count));
-  std::string text;
-  if (units.empty()) return text;
-  if (H5Dread(dataset, H5T_NATIVE_UINT16, H5S_ALL, H5S_ALL, H5P_DEFAULT, units.data()) < 0) return text;
-  for (std::size_t i = 0; i < units.size(); ++i) {
-    std::uint32_t code = units[i];
-    const bool pair = (code & 0xFC00) == 0xD800 && i + 1 < units.size() && (units[i + 1] & 0xFC00) == 0xDC00;
-    if (pair) code = 0x10000 + ((code & 0x3FF) << 10) + (units[++i] & 0x3FFU);
-    append_utf8(text, code);
-  }
-  return text;
+  if (units.empty()) return {};
+  if (H5Dread(dataset, H5T_NATIVE_UINT16, H5S_ALL, H5S_ALL, H5P_DEFAULT, units.data()) < 0) return {};
+  return utf8_of_utf16(units);
 }
 
 }  // namespace hemi::recording

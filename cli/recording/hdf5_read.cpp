@@ -6,14 +6,15 @@
 #include <optional>
 #include <stdexcept>
 
+#include "cli/recording/error.hpp"
 #include "cli/recording/hdf5_attributes.hpp"
 #include "cli/recording/hdf5_file.hpp"
 #include "cli/recording/interrupt.hpp"
+#include "cli/recording/matlab_version.hpp"
+#include "cli/recording/stored_text.hpp"
 
 namespace hemi::recording {
 namespace {
-
-constexpr const char* kRawGroup = "raw";
 
 Hdf5Handle open_file(const std::string& path) {
   require_readable(path);
@@ -22,8 +23,8 @@ Hdf5Handle open_file(const std::string& path) {
     char head[6] = {};
     std::ifstream(path, std::ios::binary).read(head, sizeof head);
     const bool old_matlab = std::string_view(head, sizeof head) == "MATLAB";
-    throw InputError({.path = path}, old_matlab ? "a MATLAB file older than v7.3" : "not an HDF5 file",
-                     old_matlab ? "save it with save(..., '-v7.3')"
+    throw InputError({.path = path}, old_matlab ? "a MATLAB file" : "not an HDF5 file",
+                     old_matlab ? "let its name end in .mat"
                                 : "check that the file is complete and its name ends as its kind demands");
   }
   Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
@@ -88,6 +89,8 @@ std::vector<double> read_values(hid_t dataset, const Place& place) {
                      "store one dataset a channel, or map it to null under \"columns\" in the sidecar");
   }
   check_interrupt();
+  // An empty MATLAB array keeps its sizes where others keep values.
+  if (read_attribute(dataset, "MATLAB_empty") == 1) return {};
   if (!is_backed(dataset)) {
     throw InputError(place,
                      fmt::format("claims {} values, more than its bytes in the file can hold", *length),
@@ -101,42 +104,105 @@ std::vector<double> read_values(hid_t dataset, const Place& place) {
   return values;
 }
 
-void read_member(hid_t parent, const std::string& path, const std::string& name,
-                 const DatasetChooser& chooser, Hdf5Group& group) {
-  const auto kind = member_type(parent, name);
-  if (kind == H5I_GROUP && name != kRawGroup && !name.starts_with('#')) {
-    group.notes.push_back(fmt::format("{}: group '{}' ignored", path, name));
+// Classes of MATLAB variables that are plain arrays; tables and other objects keep references here.
+bool is_matlab_object(hid_t object) {
+  const Json kind = read_attribute(object, "MATLAB_class");
+  if (!kind.is_string()) return false;
+  const auto text = kind.get<std::string>();
+  const bool plain = text == "double" || text == "single" || text == "logical" || text == "char" ||
+                     text == "cell" || text.starts_with("int") || text.starts_with("uint");
+  return !plain;
+}
+
+Json read_struct(hid_t group, int depth) {
+  constexpr int kDeepest = 8;
+  Json fields = Json::object();
+  if (depth > kDeepest) return fields;
+  for (const std::string& name : member_names(group)) {
+    const auto kind = member_type(group, name);
+    if (kind == H5I_GROUP) {
+      const Hdf5Handle inner(H5Gopen2(group, name.c_str(), H5P_DEFAULT), H5Gclose);
+      fields[name] = read_struct(inner, depth + 1);
+    } else if (kind == H5I_DATASET) {
+      const Hdf5Handle dataset(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose);
+      if (is_matlab_text(dataset)) {
+        fields[name] = text_value(matlab_text(dataset));
+        continue;
+      }
+      const std::vector<double> values = read_values(dataset, Place{.channel = name});
+      fields[name] = values.size() == 1 ? Json(values.front()) : Json(values);
+    }
   }
+  return fields;
+}
+
+void read_group(hid_t parent, const Place& place, const ArrayChooser& chooser, Json& attributes,
+                StoredGroup& result) {
+  const std::string& name = place.channel;
+  if (name == kRawGroup || name.starts_with('#')) return;
+  const Hdf5Handle group(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose);
+  const bool matlab_struct = group.ok() && read_attribute(group, "MATLAB_class") == "struct";
+  if (matlab_struct && name == kSidecarVariable) {
+    attributes[name] = read_struct(group, 0);
+  } else if (matlab_struct && chooser(name) == ArrayUse::kChannel) {
+    throw InputError(place, "is a struct", matlab_remedy("struct", name));
+  } else if (!matlab_struct) {
+    result.notes.push_back(fmt::format("{}: group '{}' ignored", place.path, name));
+  }
+}
+
+void read_member(hid_t parent, const Place& place, const ArrayChooser& chooser, Json& attributes,
+                 StoredGroup& result) {
+  const std::string& name = place.channel;
+  const auto kind = member_type(parent, name);
+  if (kind == H5I_GROUP) read_group(parent, place, chooser, attributes, result);
   if (kind != H5I_DATASET) return;
   const Hdf5Handle dataset(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose);
-  const Place place{.path = path, .channel = name};
-  Json& attributes = group.group.empty() ? group.file_attributes : group.group_attributes;
-  const DatasetUse use = chooser(name);
+  const ArrayUse use = chooser(name);
   if (is_matlab_text(dataset)) {
-    attributes[name] = matlab_text(dataset);
-  } else if (use == DatasetUse::kChannel) {
+    attributes[name] = text_value(matlab_text(dataset));
+  } else if (use != ArrayUse::kIgnore && is_matlab_object(dataset)) {
+    throw InputError(place, std::string("is a ") + kMatlabObject, matlab_remedy(kMatlabObject, name));
+  } else if (use == ArrayUse::kChannel) {
     const Json unit = read_attribute(dataset, "unit");
-    group.datasets.push_back(
+    result.arrays.push_back(
         {name, unit.is_string() ? unit.get<std::string>() : "", read_values(dataset, place)});
-  } else if (use == DatasetUse::kAttribute) {
+  } else if (use == ArrayUse::kAttribute) {
     const std::vector<double> values = read_values(dataset, place);
     if (values.size() != 1) throw InputError(place, "is not a single number", "store one number");
     attributes[name] = values.front();
   }
 }
 
+// Texts and metadata at the top level count for the group raw as well.
+void read_members(hid_t file, const std::string& path, const ArrayChooser& chooser, StoredGroup& result) {
+  const Hdf5Handle top(H5Gopen2(file, "/", H5P_DEFAULT), H5Gclose);
+  result.file_attributes = read_attributes(file);
+  const bool in_raw = !result.group.empty();
+  const ArrayChooser none = [](const std::string&) { return ArrayUse::kIgnore; };
+  StoredGroup unused;
+  for (const std::string& name : member_names(top)) {
+    read_member(top, {.path = path, .channel = name}, in_raw ? none : chooser, result.file_attributes,
+                in_raw ? unused : result);
+  }
+  if (!in_raw) return;
+  const Hdf5Handle group(H5Gopen2(file, kRawGroup, H5P_DEFAULT), H5Gclose);
+  result.group_attributes = read_attributes(group);
+  result.group_attributes.erase("MATLAB_class");
+  for (const std::string& name : member_names(group)) {
+    read_member(group, {.path = path, .channel = name}, chooser, result.group_attributes, result);
+  }
+}
+
 }  // namespace
 
-Hdf5Group read_hdf5(const std::string& path, bool raw, const DatasetChooser& chooser) {
+StoredGroup read_hdf5(const std::string& path, bool raw, const ArrayChooser& chooser) {
   const Hdf5Silence silence;
   const Hdf5Handle file = open_file(path);
-  Hdf5Group result;
+  StoredGroup result;
   if (raw && has_group(file, kRawGroup)) result.group = kRawGroup;
-  const Hdf5Handle parent(H5Gopen2(file, result.group.empty() ? "/" : kRawGroup, H5P_DEFAULT), H5Gclose);
   try {
-    result.file_attributes = read_attributes(file);
-    if (!result.group.empty()) result.group_attributes = read_attributes(parent);
-    for (const std::string& name : member_names(parent)) read_member(parent, path, name, chooser, result);
+    read_members(file, path, chooser, result);
   } catch (const std::bad_alloc&) {
     throw InputError({.path = path}, "claims more than fits into memory",
                      "the file is damaged: record it again");
@@ -145,6 +211,11 @@ Hdf5Group read_hdf5(const std::string& path, bool raw, const DatasetChooser& cho
                      "the file is damaged: record it again");
   }
   return result;
+}
+
+bool is_hdf5(const std::string& path) {
+  const Hdf5Silence silence;
+  return H5Fis_hdf5(path.c_str()) > 0;
 }
 
 std::vector<std::string> hdf5_dataset_names(const std::string& path) {

@@ -12,6 +12,7 @@
 #include "cli/recording/channels.hpp"
 #include "cli/recording/csv_file.hpp"
 #include "cli/recording/hdf5_file.hpp"
+#include "cli/recording/matlab_file.hpp"
 
 namespace hemi::recording {
 namespace {
@@ -52,7 +53,7 @@ Table load_csv(const std::string& path, const Sidecar& sidecar) {
 
 // Attributes of the file below, those of the group raw and the sidecar on top: the sidecar is what a person
 // corrects most easily.
-Json merged_metadata(const Hdf5Group& group, const Sidecar& sidecar, const std::string& path) {
+Json merged_metadata(const StoredGroup& group, const Sidecar& sidecar, const std::string& path) {
   Json metadata = group.file_attributes;
   for (const char* key : {"raw", "columns"}) {
     if (metadata.contains(key) && !metadata[key].is_object()) {
@@ -71,7 +72,7 @@ Json merged_metadata(const Hdf5Group& group, const Sidecar& sidecar, const std::
   return metadata;
 }
 
-void check_hdf5_units(const Hdf5Dataset& dataset, const Target& target, const std::string& path) {
+void check_units(const StoredArray& dataset, const Target& target, const std::string& path) {
   const ChannelInfo* channel = find_channel(target.channel);
   if (target.mapped || dataset.unit.empty() || channel == nullptr) return;
   const std::string remedy = unit_remedy(dataset.name, dataset.unit, *channel);
@@ -82,7 +83,7 @@ void check_hdf5_units(const Hdf5Dataset& dataset, const Target& target, const st
                    remedy);
 }
 
-void check_hdf5_values(const Table& table) {
+void check_values(const Table& table) {
   for (const Column& column : table.columns) {
     if (column.values.size() != table.rows()) {
       throw InputError({.path = table.path, .channel = column.name},
@@ -98,7 +99,7 @@ void check_hdf5_values(const Table& table) {
   }
   if (table.rows() == 0) {
     throw InputError({.path = table.path}, "no channel with values",
-                     "store one-dimensional datasets named as the channels at the top level");
+                     "store one-dimensional arrays named as the channels at the top level");
   }
 }
 
@@ -106,32 +107,36 @@ bool is_metadata_name(const std::string& name) {
   return name == "sample_rate_hz" || name == "full_scale_lsb";
 }
 
+StoredGroup read_arrays(const std::string& path, FileKind kind, bool raw, const ArrayChooser& chooser) {
+  return kind == FileKind::kMatlab ? read_matlab(path, raw, chooser) : read_hdf5(path, raw, chooser);
+}
+
 // A file may carry its sidecar inside: attributes first, so that `columns` among them count as well.
-Sidecar with_attributes(const std::string& path, Sidecar sidecar, bool raw) {
-  const Hdf5Group group = read_hdf5(path, raw, [](const std::string& name) {
-    return is_metadata_name(name) ? DatasetUse::kAttribute : DatasetUse::kIgnore;
+Sidecar with_attributes(const std::string& path, FileKind kind, Sidecar sidecar, bool raw) {
+  const StoredGroup group = read_arrays(path, kind, raw, [](const std::string& name) {
+    return is_metadata_name(name) ? ArrayUse::kAttribute : ArrayUse::kIgnore;
   });
   sidecar.content = merged_metadata(group, sidecar, path);
   return sidecar;
 }
 
-Table load_hdf5(const std::string& path, const Sidecar& file_sidecar, bool raw) {
-  const Sidecar sidecar = with_attributes(path, file_sidecar, raw);
+Table load_arrays(const std::string& path, FileKind kind, const Sidecar& file_sidecar, bool raw) {
+  const Sidecar sidecar = with_attributes(path, kind, file_sidecar, raw);
   const Json columns = sidecar.content.value("columns", Json::object());
-  Hdf5Group group = read_hdf5(path, raw, [&columns](const std::string& name) {
+  StoredGroup group = read_arrays(path, kind, raw, [&columns](const std::string& name) {
     const bool ignored = is_metadata_name(name) || (columns.contains(name) && columns[name].is_null());
-    return ignored ? DatasetUse::kIgnore : DatasetUse::kChannel;
+    return ignored ? ArrayUse::kIgnore : ArrayUse::kChannel;
   });
   std::vector<std::string> names;
-  for (const Hdf5Dataset& dataset : group.datasets) names.push_back(dataset.name);
+  for (const StoredArray& dataset : group.arrays) names.push_back(dataset.name);
   const std::vector<Target> targets = resolve_columns(names, sidecar, {.path = path});
   Table table{.path = path, .metadata = sidecar.content, .notes = group.notes};
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    check_hdf5_units(group.datasets[i], targets[i], path);
-    table.columns.push_back({targets[i].channel, std::move(group.datasets[i].values)});
+    check_units(group.arrays[i], targets[i], path);
+    table.columns.push_back({targets[i].channel, std::move(group.arrays[i].values)});
     convert(targets[i], table.columns.back().values);
   }
-  check_hdf5_values(table);
+  check_values(table);
   return table;
 }
 
@@ -160,7 +165,8 @@ FileKind file_kind(const std::string& path) {
     return std::ranges::find(list, extension) != list.end();
   };
   if (is_one_of({".csv", ".txt"})) return FileKind::kCsv;
-  if (is_one_of({".h5", ".hdf5", ".hdf", ".mat"})) return FileKind::kHdf5;
+  if (is_one_of({".h5", ".hdf5", ".hdf"})) return FileKind::kHdf5;
+  if (extension == ".mat") return FileKind::kMatlab;
   if (is_one_of({".wav", ".flac", ".aif", ".aiff", ".w64", ".rf64", ".caf"})) return FileKind::kSound;
   // A pipe has neither a name nor a second reading: it can only be text.
   if (!std::filesystem::is_regular_file(path)) return FileKind::kCsv;
@@ -168,6 +174,7 @@ FileKind file_kind(const std::string& path) {
   std::ifstream(path, std::ios::binary).read(head, sizeof head);
   const std::string_view magic(head, sizeof head);
   if (magic == "\x89HDF\r\n\x1a\n") return FileKind::kHdf5;
+  if (magic.starts_with("MATLAB")) return FileKind::kMatlab;
   for (const char* sound : {"RIFF", "RF64", "fLaC", "FORM", "OggS", "caff"}) {
     if (magic.starts_with(sound)) return FileKind::kSound;
   }
@@ -175,12 +182,14 @@ FileKind file_kind(const std::string& path) {
 }
 
 Table load_channels(const std::string& path, FileKind kind, const Sidecar& sidecar, bool raw) {
-  Table table = kind == FileKind::kHdf5 ? load_hdf5(path, sidecar, raw) : load_csv(path, sidecar);
-  if (kind == FileKind::kCsv) table.metadata = sidecar.content;
+  if (kind != FileKind::kCsv) return load_arrays(path, kind, sidecar, raw);
+  Table table = load_csv(path, sidecar);
+  table.metadata = sidecar.content;
   return table;
 }
 
 std::vector<std::string> column_names(const std::string& path, FileKind kind) {
+  if (kind == FileKind::kMatlab) return matlab_names(path);
   return kind == FileKind::kHdf5 ? hdf5_dataset_names(path) : read_csv_header(path);
 }
 

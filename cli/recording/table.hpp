@@ -15,12 +15,12 @@ struct Column {
   std::vector<double> values{};  ///< NaN: missing
 };
 
-/// Columns of equal length out of a CSV or an HDF5 file.
+/// Columns of equal length out of a CSV, HDF5 or MATLAB file.
 struct Table {
   std::string path{};
   std::size_t first_line = 0;  ///< line of row 0 in a text file, 0 in others
   std::vector<Column> columns{};
-  Json metadata = Json::object();  ///< attributes of an HDF5 file
+  Json metadata = Json::object();  ///< attributes of an HDF5 file, the sidecar in a MATLAB file
   std::vector<std::string> notes{};
 
   const Column* find(std::string_view name) const;
@@ -29,14 +29,14 @@ struct Table {
   Place place(std::size_t row, std::string channel) const;
 };
 
-enum class FileKind { kCsv, kHdf5, kSound };
+enum class FileKind { kCsv, kHdf5, kMatlab, kSound };
 
-/// By extension (.csv, .txt; .h5, .hdf5, .mat; .wav, .flac, ...), else by the first bytes. InputError where
+/// By extension (.csv, .txt; .h5, .hdf5; .mat; .wav, .flac, ...), else by the first bytes. InputError where
 /// the file is missing, empty, a directory or unreadable.
 FileKind file_kind(const std::string& path);
 
-/// A CSV or HDF5 file with its columns resolved to channels and scaled. In HDF5 the group `raw` where `raw`
-/// is true and the group is there, otherwise the top level.
+/// A CSV, HDF5 or MATLAB file with its columns resolved to channels and scaled. In HDF5 the group `raw`, in
+/// MATLAB the struct, where `raw` is true and it is there, otherwise the top level.
 Table load_channels(const std::string& path, FileKind kind, const Sidecar& sidecar, bool raw);
 
 /// Names of the columns alone, as in the file; of the group `raw` as "raw/NAME".

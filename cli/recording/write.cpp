@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "cli/recording/hdf5_file.hpp"
+#include "cli/recording/matlab_file.hpp"
 #include "cli/recording/partial_file.hpp"
 #include "cli/recording/progress.hpp"
 #include "cli/recording/sidecar.hpp"
@@ -132,9 +133,29 @@ Json raw_keys(const RawCapture& capture) {
   return keys;
 }
 
-bool is_hdf5_name(const std::string& path) {
-  const std::string extension = std::filesystem::path(path).extension().string();
-  return extension == ".h5" || extension == ".hdf5";
+// Vectors for the two formats that hold everything in one file; they stay where they are in the recording.
+OutputGroup grouped(const std::string& path, const Recording& recording) {
+  check_channels(path, recording.channels);
+  OutputGroup content{.file_attributes = full_sidecar(recording)};
+  for (const Channel& channel : recording.channels) {
+    content.arrays.push_back({channel.name, channel.unit, &channel.values});
+  }
+  return content;
+}
+
+// time_s is where a capture with gaps gets its clock from; empty elsewhere.
+OutputGroup grouped(const RawCapture& capture, const std::vector<double>& time_s) {
+  OutputGroup content{.group = kRawGroup, .group_attributes = raw_keys(capture)};
+  content.file_attributes["format"] = kRecordingFormat;
+  if (!capture.device.empty()) content.file_attributes["device"] = capture.device;
+  if (!time_s.empty()) content.arrays.push_back({"time_s", "s", &time_s});
+  content.arrays.push_back({"adc_x", "LSB", &capture.adc_x});
+  content.arrays.push_back({"adc_y", "LSB", &capture.adc_y});
+  return content;
+}
+
+std::vector<double> clock_of(const RawCapture& capture) {
+  return capture.gaps.empty() ? std::vector<double>{} : raw_time(capture);
 }
 
 }  // namespace
@@ -145,12 +166,11 @@ void write_csv(const std::string& path, const Recording& recording) {
 }
 
 void write_hdf5(const std::string& path, const Recording& recording) {
-  check_channels(path, recording.channels);
-  Hdf5Content content{.file_attributes = full_sidecar(recording)};
-  for (const Channel& channel : recording.channels) {
-    content.datasets.push_back({channel.name, channel.unit, &channel.values});
-  }
-  write_hdf5_file(path, content);
+  write_hdf5_file(path, grouped(path, recording));
+}
+
+void write_matlab(const std::string& path, const Recording& recording) {
+  write_matlab_file(path, grouped(path, recording));
 }
 
 void write_csv(const std::string& path, const RawCapture& capture) {
@@ -166,22 +186,31 @@ void write_csv(const std::string& path, const RawCapture& capture) {
 }
 
 void write_hdf5(const std::string& path, const RawCapture& capture) {
-  const std::vector<double> time_s = capture.gaps.empty() ? std::vector<double>{} : raw_time(capture);
-  Hdf5Content content{.group = "raw", .group_attributes = raw_keys(capture)};
-  content.file_attributes["format"] = kRecordingFormat;
-  if (!capture.device.empty()) content.file_attributes["device"] = capture.device;
-  if (!time_s.empty()) content.datasets.push_back({"time_s", "s", &time_s});
-  content.datasets.push_back({"adc_x", "LSB", &capture.adc_x});
-  content.datasets.push_back({"adc_y", "LSB", &capture.adc_y});
-  write_hdf5_file(path, content);
+  const std::vector<double> time_s = clock_of(capture);
+  write_hdf5_file(path, grouped(capture, time_s));
+}
+
+void write_matlab(const std::string& path, const RawCapture& capture) {
+  const std::vector<double> time_s = clock_of(capture);
+  write_matlab_file(path, grouped(capture, time_s));
+}
+
+OutputKind output_kind(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension == ".mat") return OutputKind::kMatlab;
+  return extension == ".h5" || extension == ".hdf5" ? OutputKind::kHdf5 : OutputKind::kCsv;
 }
 
 void write_file(const std::string& path, const Recording& recording) {
-  is_hdf5_name(path) ? write_hdf5(path, recording) : write_csv(path, recording);
+  const OutputKind kind = output_kind(path);
+  if (kind == OutputKind::kMatlab) return write_matlab(path, recording);
+  kind == OutputKind::kHdf5 ? write_hdf5(path, recording) : write_csv(path, recording);
 }
 
 void write_file(const std::string& path, const RawCapture& capture) {
-  is_hdf5_name(path) ? write_hdf5(path, capture) : write_csv(path, capture);
+  const OutputKind kind = output_kind(path);
+  if (kind == OutputKind::kMatlab) return write_matlab(path, capture);
+  kind == OutputKind::kHdf5 ? write_hdf5(path, capture) : write_csv(path, capture);
 }
 
 void write_text(const std::string& path, std::string_view text) {

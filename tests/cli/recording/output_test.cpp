@@ -57,6 +57,7 @@ TEST_F(Output, FullDeviceIsReported) {
   expect_output_error([] { write_csv("/dev/full", large_recording()); }, {"/dev/full", "No space left"});
   expect_output_error([] { write_csv("/dev/full", large_capture()); }, {"/dev/full", "No space left"});
   expect_output_error([] { write_hdf5("/dev/full", large_recording()); }, {"/dev/full", "No space left"});
+  expect_output_error([] { write_matlab("/dev/full", large_recording()); }, {"/dev/full", "No space left"});
   expect_output_error([] { write_text("/dev/full", "x"); }, {"/dev/full", "No space left"});
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
   EXPECT_FALSE(std::filesystem::exists("/dev/full.partial"));
@@ -69,6 +70,7 @@ TEST_F(Output, StopInTheMiddleLeavesNothing) {
   ::testing::internal::CaptureStderr();
   expect_output_error([&] { write_csv(path("a.csv"), recording); }, {"a.csv", "File too large", "space"});
   expect_output_error([&] { write_hdf5(path("a.h5"), recording); }, {"a.h5", "File too large"});
+  expect_output_error([&] { write_matlab(path("a.mat"), recording); }, {"a.mat", "File too large"});
   expect_output_error([&] { write_csv(path("a.raw.csv"), capture); }, {"a.raw.csv", "File too large"});
   expect_output_error([&] { write_hdf5(path("b.h5"), capture); }, {"b.h5", "File too large"});
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
@@ -95,6 +97,8 @@ TEST_F(Output, SmallFullFileSystem) {
   if (std::system(mount.c_str()) != 0) GTEST_SKIP() << "mounting is not allowed here";
   expect_output_error([&] { write_csv(path("small/a.csv"), large_recording()); }, {"a.csv", "No space left"});
   expect_output_error([&] { write_hdf5(path("small/a.h5"), large_recording()); }, {"a.h5", "No space left"});
+  expect_output_error([&] { write_matlab(path("small/a.mat"), large_recording()); },
+                      {"a.mat", "No space left"});
   EXPECT_TRUE(std::filesystem::is_empty(path("small")));
   ASSERT_EQ(std::system(("umount " + path("small")).c_str()), 0);
 }
@@ -104,6 +108,7 @@ TEST_F(Output, BadTargets) {
   expect_output_error([&] { write_csv(path("no/such/a.csv"), recording); },
                       {"a.csv", "No such file", "directory"});
   expect_output_error([&] { write_hdf5(path("no/such/a.h5"), recording); }, {"a.h5", "No such file"});
+  expect_output_error([&] { write_matlab(path("no/such/a.mat"), recording); }, {"a.mat", "No such file"});
   ASSERT_EQ(::mkdir(path("d").c_str(), 0755), 0);
   expect_output_error([&] { write_csv(path("d"), recording); }, {"is a directory"});
 }
@@ -113,6 +118,7 @@ TEST_F(Output, InfiniteValuesAreRefused) {
   recording.channels[0].values[41] = std::numeric_limits<double>::infinity();
   expect_output_error([&] { write_csv(path("a.csv"), recording); }, {"row 42: time_s", "infinite"});
   expect_output_error([&] { write_hdf5(path("a.h5"), recording); }, {"row 42: time_s", "infinite"});
+  expect_output_error([&] { write_matlab(path("a.mat"), recording); }, {"row 42: time_s", "infinite"});
   EXPECT_TRUE(names().empty());
 }
 

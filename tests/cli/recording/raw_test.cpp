@@ -30,7 +30,7 @@ struct Form {
 class SoundForms : public ScratchTest, public ::testing::WithParamInterface<Form> {};
 
 // The words that were written come back unchanged, and the same through every other kind of file.
-TEST_P(SoundForms, SoundCsvAndHdf5Agree) {
+TEST_P(SoundForms, SoundCsvHdf5AndMatlabAgree) {
   const auto x = ring_down(30000, GetParam().bits, 0.0821, 1);
   const auto y = ring_down(30000, GetParam().bits, 0.0822, 2);
   const std::string sound = path(GetParam().name);
@@ -44,7 +44,10 @@ TEST_P(SoundForms, SoundCsvAndHdf5Agree) {
   EXPECT_TRUE(is_raw(sound));
   write_file(path("c.raw.csv"), capture);
   write_file(path("c.h5"), capture);
+  write_file(path("c.mat"), capture);
   expect_same(read_raw_capture(path("c.raw.csv")), capture);
+  expect_same(read_raw_capture(path("c.mat")), capture);
+  EXPECT_TRUE(is_raw(path("c.mat")));
   expect_same(read_raw_capture(path("c.h5")), capture);
   EXPECT_TRUE(is_raw(path("c.raw.csv")));
   EXPECT_TRUE(is_raw(path("c.h5")));

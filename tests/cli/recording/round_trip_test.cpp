@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <bit>
 #include <limits>
 #include <random>
 
+#include "cli/recording/matlab_file.hpp"
+#include "cli/recording/matlab_handle.hpp"
+#include "cli/recording/matlab_version.hpp"
+#include "cli/recording/raw_capture.hpp"
 #include "cli/recording/write.hpp"
 #include "tests/cli/recording/scratch.hpp"
 
@@ -75,6 +80,75 @@ TEST_F(RoundTrip, Hdf5IsExact) {
   EXPECT_EQ(names(), (std::vector<std::string>{"a.h5"}));
 }
 
+TEST_F(RoundTrip, MatlabIsExact) {
+  const Recording written = hard_recording();
+  write_matlab(path("a.mat"), written);
+  EXPECT_EQ(matlab_version(path("a.mat")), MatlabVersion::k5);
+  expect_same(read_recording(path("a.mat")), written);
+  EXPECT_EQ(names(), (std::vector<std::string>{"a.mat"}));
+}
+
+// The version that is written above 2 GB.
+TEST_F(RoundTrip, Matlab73IsExact) {
+  const Recording written = hard_recording();
+  OutputGroup group{.file_attributes = written.sidecar};
+  group.file_attributes["device"] = written.device;
+  group.file_attributes["sample_rate_hz"] = written.sample_rate_hz;
+  for (const Channel& channel : written.channels)
+    group.arrays.push_back({channel.name, channel.unit, &channel.values});
+  write_matlab_file(path("a.mat"), group, 0);
+  EXPECT_EQ(matlab_version(path("a.mat")), MatlabVersion::k73);
+  Recording read = read_recording(path("a.mat"));
+  // MATLAB keeps variables by name.
+  std::ranges::sort(read.channels, {}, [&written](const Channel& channel) {
+    return std::ranges::find(written.channels, channel.name, &Channel::name) - written.channels.begin();
+  });
+  expect_same(read, written);
+  const std::string first = content("a.mat");
+  write_matlab_file(path("a.mat"), group, 0);
+  EXPECT_TRUE(content("a.mat") == first);
+  // As another library sees it: a column of doubles, a row of characters.
+  const MatlabFile file(Mat_Open(path("a.mat").c_str(), MAT_ACC_RDONLY));
+  ASSERT_TRUE(file);
+  const MatlabVariable rate(Mat_VarRead(file.get(), "rate_dph"));
+  ASSERT_TRUE(rate);
+  EXPECT_EQ(rate->class_type, MAT_C_DOUBLE);
+  ASSERT_EQ(rate->rank, 2);
+  EXPECT_EQ(rate->dims[0], written.rows());
+  EXPECT_EQ(rate->dims[1], 1U);
+  const auto* values = static_cast<const double*>(rate->data);
+  EXPECT_TRUE(same_values({values, values + written.rows()}, written.channels[1].values));
+  const MatlabVariable sidecar(Mat_VarRead(file.get(), "sidecar"));
+  ASSERT_TRUE(sidecar);
+  EXPECT_EQ(sidecar->class_type, MAT_C_CHAR);
+  EXPECT_EQ(sidecar->dims[0], 1U);
+}
+
+// The struct `raw` of v7.3, by both libraries.
+TEST_F(RoundTrip, RawCaptureInMatlab73) {
+  const std::vector<std::int32_t> x = {-32768, 0, 32767}, y = {1, 2, 3};
+  OutputGroup group{.group = "raw", .group_attributes = {{"sample_rate_hz", 1e5}, {"full_scale_lsb", 32768}}};
+  group.file_attributes["device"] = "HRG";
+  group.arrays = {{"adc_x", "LSB", &x}, {"adc_y", "LSB", &y}};
+  write_matlab_file(path("a.mat"), group, 0);
+  const RawCapture capture = read_raw_capture(path("a.mat"));
+  EXPECT_EQ(capture.adc_x, x);
+  EXPECT_EQ(capture.adc_y, y);
+  EXPECT_EQ(capture.sample_rate_hz, 1e5);
+  EXPECT_EQ(capture.full_scale_lsb, 32768.0);
+  EXPECT_EQ(capture.device, "HRG");
+  EXPECT_TRUE(is_raw(path("a.mat")));
+  const MatlabFile file(Mat_Open(path("a.mat").c_str(), MAT_ACC_RDONLY));
+  ASSERT_TRUE(file);
+  const MatlabVariable raw(Mat_VarRead(file.get(), "raw"));
+  ASSERT_TRUE(raw);
+  EXPECT_EQ(raw->class_type, MAT_C_STRUCT);
+  const matvar_t* field = Mat_VarGetStructFieldByName(raw.get(), "adc_x", 0);
+  ASSERT_NE(field, nullptr);
+  EXPECT_EQ(field->class_type, MAT_C_INT32);
+  EXPECT_EQ(field->dims[0], 3U);
+}
+
 TEST_F(RoundTrip, WrittenAgainTheBytesAreTheSame) {
   const Recording written = hard_recording();
   write_file(path("a.csv"), written);
@@ -84,6 +158,9 @@ TEST_F(RoundTrip, WrittenAgainTheBytesAreTheSame) {
   write_file(path("a.h5"), read_recording(path("a.csv")));
   write_file(path("b.h5"), read_recording(path("a.h5")));
   EXPECT_EQ(content("a.h5"), content("b.h5"));
+  write_file(path("a.mat"), read_recording(path("a.csv")));
+  write_file(path("b.mat"), read_recording(path("a.mat")));
+  EXPECT_EQ(content("a.mat"), content("b.mat"));
 }
 
 TEST_F(RoundTrip, ShortestNumbersAndEmptyCells) {
