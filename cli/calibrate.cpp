@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "cli/chain_run.hpp"
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/pages.hpp"
@@ -43,6 +44,7 @@ std::vector<recording::Recording> read_recordings(const std::vector<std::string>
                        "run it through an engine first: hemi run");
     }
     recordings.push_back(recording::read_recording(path));
+    refuse_compensated(recordings.back(), "calibrating");
   }
   return recordings;
 }

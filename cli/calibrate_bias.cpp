@@ -161,6 +161,7 @@ void report_fit(const DriftData& data, const hemi::calibration::BiasRegression& 
 
 void score_one(const std::string& path, Calibration& calibration) {
   const auto recording = recording::read_recording(path);
+  refuse_compensated(recording, "scoring");
   const auto& model = calibration.model;
   const DriftData data = drift_data(recording, model, -std::numeric_limits<double>::infinity(),
                                     std::numeric_limits<double>::infinity(), calibration.options.window_s);

@@ -61,6 +61,22 @@ void refuse_settled_points(const std::string& path) {
                               "give them to hemi calibrate");
 }
 
+void refuse_compensated(const recording::Recording& recording, const std::string& doing) {
+  const auto& keys = recording.sidecar;
+  const auto state = keys.find("compensated");
+  if (state == keys.end()) return;
+  // MATLAB's truth values may arrive as numbers.
+  const bool compensated = state->is_number() ? *state != 0 : *state == true;
+  if (!compensated) return;
+  const std::string model = recording::text_or_empty(keys, "model", recording.path);
+  const std::string source = recording::text_or_empty(keys, "source", recording.path);
+  throw recording::InputError(
+      {recording.path, 0, 0, "compensated"},
+      fmt::format("is compensated already{}: {} it again would count the drift twice",
+                  model.empty() ? "" : " (with " + model + ")", doing),
+      source.empty() ? "give the recording that it was made from" : "give what it was made from: " + source);
+}
+
 void refuse_overwriting(const std::vector<std::string>& written, const std::vector<std::string>& read) {
   namespace fs = std::filesystem;
   for (const auto& output : written) {

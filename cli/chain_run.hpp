@@ -26,6 +26,10 @@ bool holds_settled_points(const std::string& path);
 /// InputError for a file of settled points where a recording is expected.
 void refuse_settled_points(const std::string& path);
 
+/// InputError for a recording whose metadata say that it is compensated; `doing` is what must not be done to
+/// it again.
+void refuse_compensated(const recording::Recording& recording, const std::string& doing);
+
 /// InputError where writing one of the files would replace one that is read.
 void refuse_overwriting(const std::vector<std::string>& written, const std::vector<std::string>& read);
 

@@ -4,11 +4,13 @@
 #define SC_DISABLE_API_VERSION_CHECK
 #include <H5public.h>
 #include <fmt/format.h>
+#include <matio.h>
 #include <sndfile.h>
 #include <unistd.h>
 
 #include <toml++/toml.h>
 #include <Eigen/Core>
+#include <array>
 #include <boost/version.hpp>
 #include <cstdio>
 #include <cstdlib>
@@ -91,6 +93,8 @@ std::string version_of(const Tool& tool, const fs::path& file) {
 std::vector<std::pair<std::string, std::string>> libraries() {
   unsigned major = 0, minor = 0, release = 0;
   H5get_libversion(&major, &minor, &release);
+  std::array<int, 3> matio{};
+  Mat_GetLibraryVersion(&matio[0], &matio[1], &matio[2]);
   char sound[128] = {};
   sf_command(nullptr, SFC_GET_LIB_VERSION, sound, sizeof sound);
   return {{"CLI11", CLI11_VERSION},
@@ -102,6 +106,7 @@ std::vector<std::pair<std::string, std::string>> libraries() {
                                         NLOHMANN_JSON_VERSION_PATCH)},
           {"toml++", fmt::format("{}.{}.{}", TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH)},
           {"HDF5", fmt::format("{}.{}.{}", major, minor, release)},
+          {"matio", fmt::format("{}.{}.{}", matio[0], matio[1], matio[2])},
           {"libsndfile", sound},
           {"uPlot", HEMI_UPLOT_VERSION},
           {"SystemC", sc_core::sc_release()},

@@ -45,10 +45,10 @@ recording::Recording with_provenance(recording::Recording out, const RunOptions&
   return out;
 }
 
-/// The JSON file that goes with the output; none beside HDF5.
+/// The JSON file that goes with the output; HDF5 and MATLAB hold it inside.
 std::string sidecar_of_output(const RunOptions& options) {
   std::filesystem::path path = options.output;
-  if (path.empty() || path.extension() == ".h5" || path.extension() == ".hdf5") return {};
+  if (path.empty() || recording::output_kind(path) != recording::OutputKind::kCsv) return {};
   return path.replace_extension(".json").string();
 }
 
@@ -135,6 +135,7 @@ int run_recording(const RunOptions& options, const std::optional<recording::Inst
                                 "give --model M.model.json; hemi calibrate makes one");
   }
   const auto recording = recording::read_recording(options.recording);
+  refuse_compensated(recording, "compensating");
   const Setup setup = telemetry_setup(recording.sample_rate_hz, *model, options.window_s);
   const TelemetryInput input = telemetry_input(recording, *model);
   print_notes(input.notes);
@@ -185,7 +186,7 @@ int run(const RunOptions& options) {
   if (options.port.empty()) refuse_settled_points(options.recording);
   if (std::filesystem::path(options.output).extension() == ".json") {
     throw recording::OutputError(options.output, "the ending belongs to the file beside an output",
-                                 "name the output .csv or .h5");
+                                 "name the output .csv, .h5 or .mat");
   }
   refuse_overwriting({options.output, sidecar_of_output(options)}, {options.recording, options.model});
   if (options.port.empty())
@@ -205,7 +206,7 @@ void add_run(CLI::App& app, Job& job) {
       app.add_subcommand("run", "A recording through one engine: frequency, temperature, compensated rate");
   auto* recording = command->add_option(
       "recording", options->recording,
-      "raw capture (adc_x, adc_y; CSV, HDF5, WAV, FLAC) or telemetry (frequency_hz, rate_dph)");
+      "raw capture (adc_x, adc_y; CSV, HDF5, MATLAB, WAV, FLAC) or telemetry (frequency_hz, rate_dph)");
   auto* port =
       command
           ->add_option("--port", options->port,
@@ -217,7 +218,7 @@ void add_run(CLI::App& app, Job& job) {
   command->add_option("-e,--engine", options->engine, "ideal, golden, hls, rtl or systemc")
       ->capture_default_str();
   command->add_option("-m,--model", options->model, "instrument model (hemi-model/1)");
-  command->add_option("-o,--output", options->output, "output: .csv, or .h5 for HDF5");
+  command->add_option("-o,--output", options->output, "output: .csv, .h5 for HDF5, or .mat for MATLAB");
   command
       ->add_option("-f,--frequency", options->frequency_hz,
                    "where the nco starts [Hz]; default: the model's at 20 degC")

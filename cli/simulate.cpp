@@ -22,6 +22,7 @@ struct SimulateOptions {
   std::string directory = ".";
   std::optional<std::uint64_t> seed;
   bool hdf5 = false;
+  bool matlab = false;
   bool truth = false;
   bool json = false;
 };
@@ -46,9 +47,10 @@ struct Outputs {
 Outputs outputs_of(const scenario::Scenario& scenario, const SimulateOptions& options) {
   const std::string stem = (fs::path(options.directory) / scenario.name).string();
   Outputs outputs;
-  outputs.telemetry = stem + (options.hdf5 ? ".h5" : ".csv");
+  outputs.telemetry = stem + (options.hdf5 ? ".h5" : options.matlab ? ".mat" : ".csv");
   const bool raw_needs_sidecar = scenario.raw && scenario.raw->format == "csv";
-  if (!options.hdf5 || raw_needs_sidecar) outputs.sidecar = stem + ".json";
+  if (recording::output_kind(outputs.telemetry) == recording::OutputKind::kCsv || raw_needs_sidecar)
+    outputs.sidecar = stem + ".json";
   outputs.model = stem + ".model.json";
   if (scenario.raw) outputs.raw = fmt::format("{}.raw.{}", stem, scenario.raw->format);
   if (options.truth) outputs.truth = stem + ".truth.json";
@@ -142,7 +144,9 @@ void add_simulate(CLI::App& app, Job& job) {
   command->add_option("-o,--output", options->directory, "directory for the files; made if need be")
       ->capture_default_str();
   command->add_option("--seed", options->seed, "seed of the noise; goes before the scenario's");
-  command->add_flag("--hdf5", options->hdf5, "telemetry as NAME.h5 instead of NAME.csv and NAME.json");
+  auto* hdf5 =
+      command->add_flag("--hdf5", options->hdf5, "telemetry as NAME.h5 instead of NAME.csv and NAME.json");
+  command->add_flag("--matlab", options->matlab, "telemetry as NAME.mat")->excludes(hdf5);
   command->add_flag("--truth", options->truth, "the effects that were at work, as NAME.truth.json");
   command->add_flag("--json", options->json, "summary as JSON");
   command->footer("Example: hemi simulate cycles -o runs --truth");

@@ -81,7 +81,7 @@ void read_raw(const Section& section, Scenario& scenario) {
   raw.allow({"from", "to", "format"});
   scenario.raw = RawStretch{raw.quantity("from", {"s", 0.0, 1e9}, 0.0),
                             raw.quantity("to", {"s", 0.0, 1e9}, scenario.duration_s),
-                            raw.choice("format", {"csv", "wav", "h5"}, "csv")};
+                            raw.choice("format", {"csv", "wav", "h5", "mat"}, "csv")};
   if (!(scenario.raw->from_s < scenario.raw->to_s))
     raw.refuse("to", "is not later than from", "exchange the two");
   if (scenario.raw->to_s > scenario.duration_s) {

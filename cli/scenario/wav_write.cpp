@@ -2,8 +2,10 @@
 #include "cli/scenario/wav_write.hpp"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
+#include "cli/recording/error.hpp"
 #include "cli/recording/partial_file.hpp"
 
 namespace hemi::scenario {
@@ -22,6 +24,12 @@ void put(std::string& text, std::uint32_t value, int bytes) {
 void write_wav(const std::string& path, const recording::RawCapture& capture) {
   if (capture.full_scale_lsb != 32768.0 || capture.sample_rate_hz != std::floor(capture.sample_rate_hz))
     throw std::invalid_argument("WAV: samples of 16 bits at a whole rate alone");
+  // The header counts bytes in 32 bits.
+  constexpr std::size_t kMostPairs =
+      (std::numeric_limits<std::uint32_t>::max() - kHeaderAfterSize) / (kChannels * kBytes);
+  if (capture.adc_x.size() > kMostPairs)
+    throw recording::OutputError(path, "more samples than the 4 GiB of a WAV file hold",
+                                 "take a shorter stretch, or format = \"h5\"");
   const auto rate = static_cast<std::uint32_t>(capture.sample_rate_hz);
   const auto size = static_cast<std::uint32_t>(capture.adc_x.size()) * kChannels * kBytes;
   std::string text = "RIFF";

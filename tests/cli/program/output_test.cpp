@@ -19,7 +19,7 @@ class Output : public ProgramTest {
 };
 
 TEST_F(Output, PlacesThatCannotBeWritten) {
-  for (const char* place : {"no/such/o.csv", "no/such/o.h5", ".", "/dev/full"}) {
+  for (const char* place : {"no/such/o.csv", "no/such/o.h5", "no/such/o.mat", ".", "/dev/full"}) {
     expect_bad({"run", "tone.raw.csv", "-f", "4425", "-o", place}, {place});
     expect_bad({"run", "chamber.csv", "-m", "hrg.model.json", "-o", place}, {place});
     expect_bad({"calibrate", "chamber.csv", "--base", "hrg.model.json", "-o", place}, {place});
@@ -43,7 +43,7 @@ TEST_F(Output, InputsAreNotReplaced) {
              {"would replace hrg.model.json"});
   expect_bad({"calibrate", "chamber.csv", "--base", "hrg.model.json", "-o", "chamber.csv"},
              {"would replace chamber.csv"});
-  expect_bad({"run", "tone.raw.csv", "-f", "4425", "-o", "o.json"}, {"o.json", ".csv or .h5"});
+  expect_bad({"run", "tone.raw.csv", "-f", "4425", "-o", "o.json"}, {"o.json", ".csv, .h5 or .mat"});
   EXPECT_EQ(content("tone.raw.csv"), tone_before);
   EXPECT_EQ(content("chamber.csv"), chamber_before);
   EXPECT_EQ(content("hrg.model.json"), model_before);
@@ -70,25 +70,57 @@ TEST_F(Output, StandardOutputOnAFullDisk) {
   }
 }
 
-TEST_F(Output, Hdf5HoldsTheValuesOfTheCsv) {
-  const auto compare = [&](Arguments arguments) {
+TEST_F(Output, Hdf5AndMatlabHoldTheValuesOfTheCsv) {
+  const auto compare = [&](Arguments arguments, const char* other) {
     arguments.insert(arguments.end(), {"-o", "o.csv"});
     good(arguments);
-    arguments.back() = "o.h5";
+    arguments.back() = other;
     good(arguments);
-    const auto csv = recording::read_recording(path("o.csv")), hdf5 = recording::read_recording(path("o.h5"));
-    ASSERT_EQ(csv.channels.size(), hdf5.channels.size());
+    const auto csv = recording::read_recording(path("o.csv")), one = recording::read_recording(path(other));
+    ASSERT_EQ(csv.channels.size(), one.channels.size());
     EXPECT_GT(csv.rows(), 30U);
     for (std::size_t i = 0; i < csv.channels.size(); ++i) {
-      EXPECT_EQ(csv.channels[i].name, hdf5.channels[i].name);
-      EXPECT_EQ(csv.channels[i].unit, hdf5.channels[i].unit);
-      EXPECT_TRUE(recording::testing::same_values(csv.channels[i].values, hdf5.channels[i].values))
+      EXPECT_EQ(csv.channels[i].name, one.channels[i].name);
+      EXPECT_EQ(csv.channels[i].unit, one.channels[i].unit);
+      EXPECT_TRUE(recording::testing::same_values(csv.channels[i].values, one.channels[i].values))
           << csv.channels[i].name;
     }
-    EXPECT_EQ(csv.sidecar["engine"], hdf5.sidecar["engine"]);
+    EXPECT_EQ(csv.sidecar["engine"], one.sidecar["engine"]);
   };
-  compare({"run", "tone.raw.csv", "-f", "4425", "-m", "hrg.model.json"});
-  compare({"run", "chamber.csv", "-m", "hrg.model.json"});
+  for (const char* other : {"o.h5", "o.mat"}) {
+    compare({"run", "tone.raw.csv", "-f", "4425", "-m", "hrg.model.json"}, other);
+    compare({"run", "chamber.csv", "-m", "hrg.model.json"}, other);
+  }
+}
+
+// The same in all three formats: the file says so, and is neither compensated nor calibrated nor scored
+// again.
+TEST_F(Output, CompensatedOnceOnly) {
+  for (const char* output : {"o.csv", "o.h5", "o.mat"}) {
+    good({"run", "chamber.csv", "-m", "hrg.model.json", "-o", output});
+    const auto sidecar = recording::read_recording(path(output)).sidecar;
+    EXPECT_EQ(sidecar["compensated"], true);
+    EXPECT_EQ(sidecar["model"], "hrg.model.json");
+    const auto refused = [&](const Arguments& arguments, const char* doing) {
+      expect_bad(arguments, {output, "compensated already (with hrg.model.json)", doing,
+                             "give what it was made from: chamber.csv"});
+    };
+    refused({"run", output, "-m", "hrg.model.json", "-o", "p.csv"}, "compensating it again");
+    refused({"calibrate", output, "--base", "hrg.model.json", "-o", "n.model.json"}, "calibrating it again");
+    refused({"calibrate", "chamber.csv", "--base", "hrg.model.json", "--heldout", output},
+            "scoring it again");
+    good({"allan", output, "-c", "compensated_rate_dph"});
+  }
+}
+
+// Where no model was given, nothing has been taken away: the recording may be calibrated.
+TEST_F(Output, WithoutModelNothingIsCompensated) {
+  good({"run", "tone.raw.csv", "-f", "4425", "-o", "o.mat"});
+  EXPECT_EQ(recording::read_recording(path("o.mat")).sidecar["compensated"], false);
+  file("foreign.json", R"({"compensated": true})");
+  file("foreign.csv", content("chamber.csv"));
+  expect_bad({"calibrate", "foreign.csv", "--base", "hrg.model.json"},
+             {"compensated already", "the recording that it was made from"});
 }
 
 class Interrupted : public ProgramTest {

@@ -78,16 +78,22 @@ TEST_F(Simulate, SameSeedSameFiles) {
   EXPECT_NE(content("one/a.csv"), content("three/a.csv"));
 }
 
-TEST_F(Simulate, Hdf5HoldsTheValuesOfTheCsv) {
+TEST_F(Simulate, Hdf5AndMatlabHoldTheValuesOfTheCsv) {
   file("a.toml", kShort);
   good({"simulate", "a.toml"});
   good({"simulate", "a.toml", "--hdf5", "-o", "h"});
+  good({"simulate", "a.toml", "--matlab", "-o", "m"});
   EXPECT_EQ(files_in("h"), (std::vector<std::string>{"a.h5", "a.model.json"}));
-  const auto csv = recording::read_recording(path("a.csv")), hdf5 = recording::read_recording(path("h/a.h5"));
-  ASSERT_EQ(csv.channels.size(), hdf5.channels.size());
-  for (const auto& channel : csv.channels)
-    EXPECT_TRUE(recording::testing::same_values(channel.values, hdf5.find(channel.name)->values))
-        << channel.name;
+  EXPECT_EQ(files_in("m"), (std::vector<std::string>{"a.mat", "a.model.json"}));
+  const auto csv = recording::read_recording(path("a.csv"));
+  for (const char* name : {"h/a.h5", "m/a.mat"}) {
+    const auto other = recording::read_recording(path(name));
+    ASSERT_EQ(csv.channels.size(), other.channels.size());
+    for (const auto& channel : csv.channels)
+      EXPECT_TRUE(recording::testing::same_values(channel.values, other.find(channel.name)->values))
+          << channel.name;
+  }
+  expect_bad({"simulate", "a.toml", "--hdf5", "--matlab"}, {"--hdf5", "--matlab"});
 }
 
 TEST_F(Simulate, BadInputs) {
