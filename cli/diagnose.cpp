@@ -13,11 +13,13 @@
 #include "cli/diagnose_report.hpp"
 #include "cli/diagnose_table.hpp"
 #include "cli/diagnose_telemetry.hpp"
+#include "cli/invocation.hpp"
 #include "cli/options.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/interrupt.hpp"
 #include "cli/recording/recording.hpp"
 #include "cli/recording/write.hpp"
+#include "cli/report/diagnosis_report.hpp"
 #include "golden/calibration/linear_fit.hpp"
 
 namespace hemi::cli {
@@ -88,9 +90,23 @@ diagnosis::BenchDiagnosis run(const DiagnoseOptions& options, const Stretch& fit
   }
 }
 
+// Residuals over the rows of the fit, the linear model's and the last one's.
+report::ReportSeries series_of(const diagnosis::BenchDiagnosis& result, const Stretch& fitted,
+                               double rate_hz) {
+  report::ReportSeries series{.channel = "displacement_v", .unit = "V"};
+  const auto& before = result.linear.residual;
+  const auto& after = result.final.residual;
+  for (Eigen::Index i = 0; i < before.size(); ++i)
+    series.time_s.push_back(fitted.first_s + static_cast<double>(i) / rate_hz);
+  series.before.assign(before.data(), before.data() + before.size());
+  series.after.assign(after.data(), after.data() + after.size());
+  return series;
+}
+
 int diagnose_bench(const DiagnoseOptions& options, const recording::Recording& recording) {
   const std::string json_path = (fs::path(options.directory) / "diagnosis.json").string();
   const std::string model_path = (fs::path(options.directory) / "corrected.model.json").string();
+  const std::string page_path = (fs::path(options.directory) / "report.html").string();
   std::vector<std::string> inputs = {options.recording};
   std::optional<diagnosis::BenchPrior> prior;
   recording::InstrumentModel given{.device = recording.device};
@@ -113,10 +129,12 @@ int diagnose_bench(const DiagnoseOptions& options, const recording::Recording& r
       to_json(result, {options.recording, options.model, fitted.first_s, fitted.last_s});
   recording::write_model(model_path, corrected_model(result, given));
   recording::write_text(json_path, recording::json_text(json, 2) + "\n");
+  report::write_diagnosis_report(page_path, json, {series_of(result, fitted, recording.sample_rate_hz)},
+                                 {.command = invocation()});
   if (options.json)
     fmt::print("{}\n", recording::json_text(json, 2));
   else
-    fmt::print("{}wrote {}, {}\n", to_text(result), json_path, model_path);
+    fmt::print("{}wrote {}, {}, {}\n", to_text(result), json_path, model_path, page_path);
   return result.verdict == diagnosis::Verdict::consistent ? exit_good : exit_difference;
 }
 

@@ -4,16 +4,20 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <span>
 #include <stdexcept>
 
 #include "cli/capture_input.hpp"
 #include "cli/capture_replay.hpp"
 #include "cli/chain_run.hpp"
 #include "cli/commands.hpp"
+#include "cli/invocation.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/interrupt.hpp"
 #include "cli/recording/json.hpp"
 #include "cli/recording/write.hpp"
+#include "cli/report/diagnosis_report.hpp"
+#include "cli/report/residuals.hpp"
 
 namespace hemi::cli {
 namespace {
@@ -90,7 +94,7 @@ Json to_json(const StageDiagnosis& d, const CaptureOptions& options, const std::
     if (test.limit > 0.0)
       json["detection_limits"].push_back(
           {{"id", test.name},
-           {"smallest_detectable", {{"value", test.limit}, {"unit", test.unit}}},
+           {"smallest_detectable", {{"size", {{"value", test.limit}, {"unit", test.unit}}}}},
            {"present_below_limit", "cannot be excluded"}});
   }
   if (d.core) {
@@ -119,6 +123,23 @@ std::string to_text(const StageDiagnosis& d) {
   return text;
 }
 
+// The tones and the floor that the stages are told apart by.
+report::Plot spectrum(const diagnosis::StageCapture& capture) {
+  report::Plot plot{.title = "Spectrum of the samples",
+                    .x = {"frequency", "Hz", true},
+                    .y = {"density", "LSB/√Hz", true},
+                    .note = "Welch's mean of periodograms, Hann window."};
+  std::vector<double> time_s(static_cast<std::size_t>(capture.x_lsb.size()));
+  for (std::size_t i = 0; i < time_s.size(); ++i) time_s[i] = static_cast<double>(i) / capture.sample_rate_hz;
+  for (const auto& [name, lsb] : {std::pair{"adc_x", &capture.x_lsb}, std::pair{"adc_y", &capture.y_lsb}}) {
+    if (lsb->size() == 0 || lsb->cwiseAbs().maxCoeff() == 0.0) continue;
+    const std::span values(lsb->data(), static_cast<std::size_t>(lsb->size()));
+    if (auto series = report::spectrum_series(name, time_s, values))
+      plot.series.push_back(std::move(*series));
+  }
+  return plot;
+}
+
 }  // namespace
 
 bool is_capture(const std::string& path) {
@@ -127,6 +148,7 @@ bool is_capture(const std::string& path) {
 
 int diagnose_capture(const CaptureOptions& options) {
   const std::string json_path = (fs::path(options.directory) / "diagnosis.json").string();
+  const std::string page_path = (fs::path(options.directory) / "report.html").string();
   std::vector<std::string> inputs = {options.capture};
   for (const auto& path : {options.model, options.telemetry})
     if (!path.empty()) inputs.push_back(path);
@@ -150,10 +172,12 @@ int diagnose_capture(const CaptureOptions& options) {
   make_directory(options.directory);
   const Json json = to_json(d, options, notes);
   recording::write_text(json_path, recording::json_text(json, 2) + "\n");
+  report::write_diagnosis_report(page_path, json, {},
+                                 {.command = invocation(), .plots = {spectrum(input.capture)}});
   if (options.json)
     fmt::print("{}\n", recording::json_text(json, 2));
   else
-    fmt::print("{}wrote {}\n", to_text(d), json_path);
+    fmt::print("{}wrote {}, {}\n", to_text(d), json_path, page_path);
   return d.findings.empty() ? exit_good : exit_difference;
 }
 

@@ -10,9 +10,11 @@
 #include <filesystem>
 
 #include "cli/chain_run.hpp"
+#include "cli/invocation.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/interrupt.hpp"
 #include "cli/recording/write.hpp"
+#include "cli/report/diagnosis_report.hpp"
 
 namespace hemi::cli {
 namespace {
@@ -117,6 +119,21 @@ Json located(const CaseMemory& result, const diagnosis::CaseRows& rows) {
              {"range", {rows.case_degc.minCoeff(), rows.case_degc.maxCoeff()}},
              {"when", "same temperature, another past"}}},
            {"stage", "sensor"}}};
+}
+
+// Residuals of rows left out of the fit: the polynomial's, and those of the forms chosen without them.
+report::ReportSeries series_of(const CaseMemory& result, const diagnosis::CaseRows& rows) {
+  const auto values = [](const Eigen::VectorXd& v) {
+    return std::vector<double>(v.data(), v.data() + v.size());
+  };
+  return {.channel = "rate_dph",
+          .unit = "deg/h",
+          .time_s = values(rows.time_s),
+          .before = values(result.selection.held_out[0]),
+          .after = values(result.selection.chosen_held_out),
+          .over_name = "case_temp_degc",
+          .over_unit = "degC",
+          .over = values(rows.case_degc)};
 }
 
 }  // namespace
@@ -239,22 +256,28 @@ std::string to_text(const CaseMemory& result, const Recording& recording) {
 int diagnose_case(const Recording& recording, const DiagnoseCaseOptions& options) {
   namespace fs = std::filesystem;
   const std::string path = (fs::path(options.directory) / "diagnosis.json").string();
+  const std::string page = (fs::path(options.directory) / "report.html").string();
   refuse_overwriting({path}, {recording.path});
   print_notes(recording.notes);
-  diagnosis::CaseMemory result;
+  CaseMemory result;
+  const diagnosis::CaseRows rows = case_rows(recording);
   try {
-    result = diagnosis::diagnose_case(case_rows(recording), recording::check_interrupt);
+    result = diagnosis::diagnose_case(rows, recording::check_interrupt);
   } catch (const std::invalid_argument& error) {
     throw recording::InputError({.path = recording.path}, error.what(),
                                 "record a temperature cycle of at least 256 rows");
   }
   make_directory(options.directory);
-  const std::string text = recording::json_text(to_json(result, recording), 2);
+  const Json json = to_json(result, recording);
+  const std::string text = recording::json_text(json, 2);
   recording::write_text(path, text + "\n");
+  report::write_diagnosis_report(
+      page, json, {series_of(result, rows)},
+      {.command = invocation(), .time_unit = times_are_samples(recording) ? "samples" : "s"});
   if (options.json)
     fmt::print("{}\n", text);
   else
-    fmt::print("{}wrote {}\n", to_text(result, recording), path);
+    fmt::print("{}wrote {}, {}\n", to_text(result, recording), path, page);
   return result.verdict == Verdict::consistent ? 0 : 1;
 }
 

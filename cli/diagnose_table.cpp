@@ -8,8 +8,10 @@
 
 #include "cli/chain_run.hpp"
 #include "cli/diagnose_report.hpp"
+#include "cli/invocation.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/write.hpp"
+#include "cli/report/diagnosis_report.hpp"
 #include "golden/calibration/settled_points.hpp"
 
 namespace hemi::cli {
@@ -67,6 +69,28 @@ Json alternatives(const TableDiagnosis& result) {
                     "so close to a polynomial of order {} has p = {:.2g} (F-test)",
                     result.residual_degc, result.chosen, result.f_p)},
        {"separating_experiment", kChamberExperiment}}};
+}
+
+// What the baseline and the chosen order leave at each point, the rounding of the table as lines.
+report::Plot residual_plot(const TableDiagnosis& result, const calibration::SettledPoints& points) {
+  const auto values = [](const Eigen::VectorXd& v) {
+    return std::vector<double>(v.data(), v.data() + v.size());
+  };
+  report::Plot plot{.title = "Settled frequency less f(T)",
+                    .x = {"settled temperature", "degC"},
+                    .y = {"measured − fitted", "Hz"}};
+  for (const Eigen::Index order : {result.baseline, result.chosen}) {
+    if (!plot.series.empty() && result.chosen == result.baseline) break;
+    plot.series.push_back(report::Series::dots(fmt::format("order {}", order),
+                                               values(points.temperature_degc),
+                                               values(result.study.report(order).fit.residuals_hz)));
+  }
+  if (points.resolution_hz > 0.0) {
+    const double half = 0.5 * points.resolution_hz;
+    const double low = points.temperature_degc.minCoeff(), high = points.temperature_degc.maxCoeff();
+    plot.guides = {{"rounding", low, half, high, half}, {"", low, -half, high, -half}};
+  }
+  return plot;
 }
 
 }  // namespace
@@ -149,21 +173,26 @@ std::string to_text(const TableDiagnosis& result) {
 int diagnose_table(const DiagnoseTableOptions& options) {
   namespace fs = std::filesystem;
   const std::string path = (fs::path(options.directory) / "diagnosis.json").string();
+  const std::string page = (fs::path(options.directory) / "report.html").string();
   refuse_overwriting({path}, {options.points});
   TableDiagnosis result;
+  calibration::SettledPoints points;
   try {
-    const auto points = calibration::read_settled_points(options.points, options.order + 1);
+    points = calibration::read_settled_points(options.points, options.order + 1);
     result = diagnosis::diagnose_table(points, options.order);
   } catch (const std::invalid_argument& error) {
     throw recording::InputError({.path = options.points}, error.what(), "add soaks at other temperatures");
   }
   make_directory(options.directory);
-  const std::string text = recording::json_text(to_json(result, options.points), 2);
+  const Json json = to_json(result, options.points);
+  const std::string text = recording::json_text(json, 2);
   recording::write_text(path, text + "\n");
+  report::write_diagnosis_report(page, json, {},
+                                 {.command = invocation(), .plots = {residual_plot(result, points)}});
   if (options.json)
     fmt::print("{}\n", text);
   else
-    fmt::print("{}wrote {}\n", to_text(result), path);
+    fmt::print("{}wrote {}, {}\n", to_text(result), path, page);
   return result.verdict == Verdict::consistent ? 0 : 1;
 }
 

@@ -21,6 +21,7 @@
 #include "cli/recording/interrupt.hpp"
 #include "cli/recording/progress.hpp"
 #include "cli/recording/write.hpp"
+#include "cli/report/prove_report.hpp"
 #include "golden/concealed/cases.hpp"
 
 namespace hemi::cli {
@@ -138,11 +139,13 @@ int prove_all(const ProveOptions& options, const std::vector<prove::Task>& tasks
   report.recordings = static_cast<int>(tasks.size());
   report.own = &score;
   const std::string markdown = prove::to_markdown(report);
+  const recording::Json json = prove::to_json(report);
   recording::write_text((fs::path(options.directory) / "prove.json").string(),
-                        recording::json_text(prove::to_json(report), 1) + "\n");
+                        recording::json_text(json, 1) + "\n");
   recording::write_text((fs::path(options.directory) / "prove.md").string(), markdown);
+  report::write_prove_report((fs::path(options.directory) / "prove.html").string(), json);
   if (options.json)
-    fmt::print("{}\n", recording::json_text(prove::to_json(report), 2));
+    fmt::print("{}\n", recording::json_text(json, 2));
   else
     fmt::print("{}", markdown);
   return prove::all_held(report) ? exit_good : exit_difference;
@@ -189,7 +192,7 @@ void add_prove(CLI::App& app, Job& job) {
   command->add_option("--memory-limit", options->memory_mib, "address space of one diagnosis [MiB], 0: none")
       ->check(number_between(0.0, 1e7))
       ->capture_default_str();
-  command->add_option("-o,--output", options->directory, "directory for prove.json and prove.md")
+  command->add_option("-o,--output", options->directory, "directory for prove.json, prove.md and prove.html")
       ->capture_default_str();
   command->add_flag("--json", options->json, "the figures as JSON instead of the tables");
   command->footer(

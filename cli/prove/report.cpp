@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <set>
 
@@ -41,6 +42,30 @@ Json confusion_json(const Score& score) {
     for (const auto& [answer, count] : given) matrix[truth][answer] = count;
   }
   return matrix;
+}
+
+// Stated probabilities in ten bins, as calibration_error() takes them: mean stated, share right.
+Json calibration_json(const Score& score) {
+  constexpr int kBins = 10;
+  std::array<Rate, kBins> rates{};
+  std::array<double, kBins> sums{};
+  for (const auto& [probability, right] : score.stated()) {
+    const auto bin =
+        static_cast<std::size_t>(std::clamp(static_cast<int>(probability * kBins), 0, kBins - 1));
+    rates[bin].add(right);
+    sums[bin] += probability;
+  }
+  Json bins = Json::array();
+  for (std::size_t bin = 0; bin < rates.size(); ++bin) {
+    const Rate& rate = rates[bin];
+    if (rate.trials == 0) continue;
+    const auto [low, high] = wilson95(rate);
+    bins.push_back({{"stated", sums[bin] / rate.trials},
+                    {"right", rate.value()},
+                    {"ci95", {low, high}},
+                    {"names", rate.trials}});
+  }
+  return bins;
 }
 
 std::string confusion_table(const Score& score) {
@@ -84,6 +109,7 @@ Json to_json(const Report& report) {
     json["classes"][cls] = {{"right", rate.hits}, {"recordings", rate.trials}, {"ci95", {low, high}}};
   }
   json["confusion"] = confusion_json(*report.own);
+  json["calibration"] = calibration_json(*report.own);
   json["failures"] = Json::array();
   for (const Failure& failure : report.own->failures())
     json["failures"].push_back({{"recording", failure.name},

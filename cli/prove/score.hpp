@@ -48,6 +48,8 @@ class Score {
   const std::map<std::string, std::map<std::string, int>>& confusion() const { return confusion_; }
   /// By class: right answers.
   const std::map<std::string, Rate>& by_class() const { return by_class_; }
+  /// Probability of each first name, and whether it was right.
+  const std::vector<std::pair<double, bool>>& stated() const { return stated_; }
   double longest_s() const { return longest_s_; }
   double peak_mib() const { return peak_mib_; }
 

@@ -73,7 +73,7 @@ std::optional<Plot> before_and_after(const ReportSeries& s, Plot plot, Make make
 }
 
 Section where_section(const Json& diagnosis, const std::vector<ReportSeries>& series,
-                      const std::string& time_unit) {
+                      const DiagnosisPage& page) {
   Section section{"Where the model fails", {}};
   Chain chain;
   const Json& located = member(diagnosis, "located");
@@ -88,12 +88,13 @@ Section where_section(const Json& diagnosis, const std::vector<ReportSeries>& se
   }
   if (chain.marks.empty()) chain.note = "No block is marked: nothing was located.";
   section.parts.emplace_back(chain);
-  if (Table table = located_table(diagnosis, time_unit); !table.rows.empty())
+  if (Table table = located_table(diagnosis, page.time_unit); !table.rows.empty())
     section.parts.emplace_back(table);
   for (const auto& s : series) {
-    section.parts.emplace_back(residual_plot(diagnosis, s, time_unit));
+    section.parts.emplace_back(residual_plot(diagnosis, s, page.time_unit));
     if (!s.over.empty()) section.parts.emplace_back(residual_over(s));
   }
+  for (const Plot& plot : page.plots) section.parts.emplace_back(plot);
   return section;
 }
 
@@ -116,7 +117,8 @@ Section what_section(const Json& diagnosis) {
   return section;
 }
 
-Section proof_section(const Json& diagnosis, const std::vector<ReportSeries>& series, const Units& units) {
+Section proof_section(const Json& diagnosis, const std::vector<ReportSeries>& series, const Units& units,
+                      const std::string& time_unit) {
   Section section{"Proof", {}};
   if (Table table = proof_table(diagnosis, units); !table.rows.empty()) {
     table.note = "Gain: before minus after. Floor: what no model of the library can go below on these rows.";
@@ -126,15 +128,17 @@ Section proof_section(const Json& diagnosis, const std::vector<ReportSeries>& se
     section.parts.emplace_back(
         Paragraph{fmt::format("Decoys (candidates shifted in time or with random phases): {} of {} accepted.",
                               cell(member(decoys, "accepted")), cell(member(decoys, "made")))});
+  for (Table& table : evidence_tables(diagnosis)) section.parts.emplace_back(std::move(table));
+  const bool seconds = time_unit == "s";
   for (const auto& s : series) {
     Plot allan{.title = "Allan deviation of the residual of " + s.channel,
-               .x = {"averaging time", "s", true},
+               .x = {"averaging time", time_unit, true},
                .y = {"deviation", s.unit, true},
                .note = "Bars: 68 % intervals. A modelled effect leaves the long times first."};
     if (auto plot = before_and_after(s, allan, allan_series)) section.parts.emplace_back(*plot);
     Plot spectrum{.title = "Spectrum of the residual of " + s.channel,
-                  .x = {"frequency", "Hz", true},
-                  .y = {"density", s.unit + "/√Hz", true}};
+                  .x = {"frequency", seconds ? "Hz" : "1/sample", true},
+                  .y = {"density", s.unit + (seconds ? "/√Hz" : "·√sample"), true}};
     if (auto plot = before_and_after(s, spectrum, spectrum_series)) section.parts.emplace_back(*plot);
   }
   return section;
@@ -234,8 +238,8 @@ void write_diagnosis_report(const std::string& path, const Json& diagnosis,
                 .facts = facts_of(diagnosis),
                 .command = page.command};
   for (Section& section :
-       std::vector<Section>{where_section(diagnosis, series, page.time_unit), what_section(diagnosis),
-                            proof_section(diagnosis, series, units), open_section(diagnosis),
+       std::vector<Section>{where_section(diagnosis, series, page), what_section(diagnosis),
+                            proof_section(diagnosis, series, units, page.time_unit), open_section(diagnosis),
                             experiment_section(diagnosis), core_section(diagnosis), rest_section(diagnosis)})
     if (!section.parts.empty()) report.sections.push_back(std::move(section));
   write_report(path, report);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cli/recording/json.hpp"
+#include "cli/report/report.hpp"
 
 namespace hemi::report {
 
@@ -38,14 +39,16 @@ struct ReportSeries {
 struct DiagnosisPage {
   std::string command{};        ///< that makes this page, printed at its foot
   std::string time_unit = "s";  ///< or "samples"
+  std::vector<Plot> plots{};    ///< behind the residuals, for what no series over time shows
 };
 
 /// Renders a hemi-diagnosis/1 object: the verdict in one sentence; where (located stretches shaded in the
 /// residuals, the stage marked in the chain); what (effects with equation, parameters, intervals); the proof
 /// (before, after, floor, on rows fitted and held out; Allan deviation and spectrum of the residuals); what
-/// is not excluded (detection limits); which experiment separates what is left; what remains. Keys that are
-/// absent leave their part out; unknown keys are ignored. The file appears whole or not at all; OutputError
-/// where it cannot be written, std::invalid_argument for vectors of unequal length.
+/// is not excluded (detection limits); the tests, orders and families that were compared; which experiment
+/// separates what is left; what remains. Keys that are absent leave their part out; unknown keys are ignored.
+/// The file appears whole or not at all; OutputError where it cannot be written, std::invalid_argument for
+/// vectors of unequal length.
 void write_diagnosis_report(const std::string& path, const recording::Json& diagnosis,
                             const std::vector<ReportSeries>& series, const DiagnosisPage& page = {});
 

@@ -257,4 +257,34 @@ Table not_testable_table(const Json& diagnosis) {
   return table;
 }
 
+std::vector<Table> evidence_tables(const Json& diagnosis) {
+  std::vector<Table> tables;
+  for (const auto& [key, title] : {std::pair{"tests", "Every test that was made"},
+                                   std::pair{"orders", "Orders of f(T) that were compared"},
+                                   std::pair{"families", "Forms that were compared"}}) {
+    const Json& list = member(diagnosis, key);
+    if (!list.is_array() || list.empty() || !list.front().is_object()) continue;
+    Table table{title, {}, {}, {}};
+    std::vector<std::string> keys;
+    for (const auto& [name, value] : list.front().items()) {
+      keys.push_back(name);
+      table.columns.push_back(in_words(name));
+    }
+    for (const Json& entry : list) {
+      std::vector<std::string> cells;
+      for (const std::string& name : keys) {
+        const Json& value = member(entry, name.c_str());
+        const std::string range = range_of(value);
+        cells.push_back(value.is_boolean()  ? (value.get<bool>() ? "yes" : "no")
+                        : !range.empty()    ? range
+                        : value.is_string() ? in_words(value.get<std::string>())
+                                            : cell(value));
+      }
+      table.rows.push_back(std::move(cells));
+    }
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
 }  // namespace hemi::report

@@ -46,6 +46,10 @@ Table alternatives_table(const recording::Json& diagnosis);
 /// Effects that the recording cannot show, and why.
 Table not_testable_table(const recording::Json& diagnosis);
 
+/// The lists of a diagnosis that hold what was compared (`tests`, `orders`, `families`), a table each: one
+/// column a key of the first entry, its name in words. Empty lists give none.
+std::vector<Table> evidence_tables(const recording::Json& diagnosis);
+
 }  // namespace hemi::report
 
 #endif  // HEMI_CLI_REPORT_DIAGNOSIS_TEXT_HPP

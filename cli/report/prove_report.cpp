@@ -130,6 +130,36 @@ Section class_section(const Json& proof) {
   return section;
 }
 
+/// Probabilities that were stated against the share of names that was right, with intervals; on the line both
+/// agree.
+Section calibration_section(const Json& proof) {
+  Section section{"Stated probabilities", {}};
+  Series series{.name = "names", .style = Style::kPoints};
+  Table table{"", {"stated, mean of the bin", "right", "95 % interval", "names"}, {}, {}};
+  for (const Json& bin : list_of(proof, "calibration")) {
+    const auto stated = number_of(member(bin, "stated")), right = number_of(member(bin, "right"));
+    const Json& interval = member(bin, "ci95");
+    if (!stated || !right || !interval.is_array() || interval.size() != 2) continue;
+    series.points.x.push_back(*stated);
+    series.points.y.push_back(*right);
+    series.lower.push_back(number_of(interval[0]).value_or(*right));
+    series.upper.push_back(number_of(interval[1]).value_or(*right));
+    table.rows.push_back(
+        {nice_number(*stated, 3), nice_number(*right, 3), range_of(interval), text_of(member(bin, "names"))});
+  }
+  if (table.rows.empty()) return section;
+  series.points.samples = series.points.x.size();
+  Plot plot{.title = "Share of right names over stated probability",
+            .x = {"stated probability", "1"},
+            .y = {"share that was right", "1"},
+            .note = "Bars: 95 % intervals. A bar that meets the line does not contradict what was stated."};
+  plot.series.push_back(std::move(series));
+  plot.guides = {{"stated = right", 0.0, 0.0, 1.0, 1.0}};
+  section.parts.emplace_back(std::move(plot));
+  section.parts.emplace_back(std::move(table));
+  return section;
+}
+
 Section failure_section(const Json& proof) {
   Section section{"Failures, one by one", {}};
   Table table{"", {"recording", "class", "run", "d′", "concealed", "said", "why"}, {}, {}};
@@ -190,7 +220,8 @@ void write_prove_report(const std::string& path, const Json& proof) {
     for (const auto& [method, rival] : rivals.items())
       if (Matrix part = confusion(member(rival, "confusion"), in_words(method)); !part.rows.empty())
         said.parts.emplace_back(std::move(part));
-  for (Section section : {std::move(all), class_section(proof), std::move(said), failure_section(proof)})
+  for (Section section : {std::move(all), class_section(proof), calibration_section(proof), std::move(said),
+                          failure_section(proof)})
     if (!section.parts.empty()) report.sections.push_back(std::move(section));
   write_report(path, report);
 }

@@ -129,6 +129,8 @@ recording::Json proof_json() {
     "longest_diagnosis_s": 41.2, "largest_diagnosis_mib": 388.0,
     "classes": {"null": {"right": 20, "recordings": 20, "ci95": [0.839, 1.0]}, "single": {"right": 22, "recordings": 24, "ci95": [0.742, 0.977]}},
     "confusion": {"none": {"none": 20}, "duffing": {"duffing": 11, "unknown": 1}, "thermal_hysteresis": {"thermal_hysteresis": 10, "frequency_ageing": 1, "none": 1}},
+    "calibration": [{"stated": 0.63, "right": 0.5, "ci95": [0.095, 0.905], "names": 2},
+                    {"stated": 0.97, "right": 0.955, "ci95": [0.782, 0.992], "names": 22}],
     "failures": [{"recording": "single-013", "class": "single", "scenario": "cycle", "dprime": 11.2, "concealed": "duffing", "said": "unknown", "why": "said unknown"}],
     "rivals": {"lasso": {"rows": [{"key": "strong_first", "text": "", "trials": 24, "value": 0.625}], "confusion": {"none": {"none": 14, "duffing": 6}}}}})json");
 }
