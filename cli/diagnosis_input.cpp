@@ -72,8 +72,8 @@ std::optional<double> end_slope(const VectorXd& x, Index at, Index count, int si
 // Between two rows by a cubic with the slopes that the thermometer has on both sides; by a straight line, a
 // chamber that turns in a pause of 25 minutes would be missed by degrees.
 void bridge(VectorXd& x, Index last, Index next) {
-  constexpr Index kMostRows = 30;
-  const Index rows = std::min(next - last - 1, kMostRows);
+  constexpr Index kMostMissing = 30;
+  const Index rows = std::min(next - last - 1, kMostMissing);
   const double length = static_cast<double>(next - last), rise = x[next] - x[last];
   const auto before = end_slope(x, last, rows, -1), after = end_slope(x, next, rows, 1);
   const bool curved = before && after;

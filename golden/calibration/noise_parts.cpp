@@ -14,7 +14,7 @@
 namespace hemi::calibration {
 namespace {
 
-constexpr Eigen::Index kLeastRows = 64;
+constexpr Eigen::Index kLeastNoiseRows = 64;
 constexpr double kPrice = 12.0;
 
 struct Pooled {
@@ -28,7 +28,7 @@ std::map<Eigen::Index, Pooled> pooled_variances(const Eigen::VectorXd& residual,
                                                 double longest_tau_s) {
   std::map<Eigen::Index, Pooled> pooled;
   for (const RowRange& range : segments) {
-    if (range.count < kLeastRows) continue;
+    if (range.count < kLeastNoiseRows) continue;
     const auto allan = allan_deviation(residual.segment(range.begin, range.count), interval_s);
     for (const AllanPoint& point : allan.points) {
       if (8 * point.averaged > range.count || point.tau_s > longest_tau_s * (1.0 + 1e-9)) continue;

@@ -12,7 +12,7 @@ namespace hemi::calibration {
 namespace {
 
 constexpr Eigen::Index kVoltageRows = 1000;
-constexpr Eigen::Index kLeastRows = 40;
+constexpr Eigen::Index kLeastVoltageRows = 40;
 constexpr double kVoltageLevel = 0.01;
 
 // Column means over blocks; what is left of a segment after its last whole block is not used.
@@ -25,7 +25,7 @@ struct Averaged {
 
 Averaged average(const Eigen::MatrixXd& x, const Eigen::VectorXd& y, const std::vector<RowRange>& segments) {
   const Eigen::Index total = total_rows(segments);
-  if (total < kLeastRows) throw std::invalid_argument("fewer than 40 usable rows");
+  if (total < kLeastVoltageRows) throw std::invalid_argument("fewer than 40 usable rows");
   Averaged out;
   out.length = std::max<Eigen::Index>(1, total / kVoltageRows);
   Eigen::Index rows = 0;

@@ -20,7 +20,7 @@ constexpr double kShortest = 0.5;  // blocks
 constexpr double kWalkLengths = 30.0;
 // Of a part to the white one.
 constexpr double kLeastRatio = 1e-7, kMostRatio = 8000.0;
-constexpr int kBits = 12;  // of the logarithm of a ratio: far finer than the likelihood can tell
+constexpr int kRatioBits = 12;  // of the logarithm of a ratio: far finer than the likelihood can tell
 
 // Gains and innovation variances of every row; they do not depend on the data. A row tells something of its
 // own block's step of a walk as well: the walk is carried on to the block's end.
@@ -154,7 +154,7 @@ NoiseShape fit_noise_shape(const MatrixXd& x, const VectorXd& y, const std::vect
           at.*part = std::exp(log_ratio);
           return value(at);
         },
-        std::log(std::max(least.*part, kLeastRatio)), std::log(kMostRatio), kBits);
+        std::log(std::max(least.*part, kLeastRatio)), std::log(kMostRatio), kRatioBits);
     at.*part = std::exp(best.first);
     found = best.second;
     return at;

@@ -19,7 +19,7 @@ using calibration::RowRange;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-constexpr Index kFolds = 8;
+constexpr Index kLeftOutFolds = 8;
 constexpr Index kStretches =
     40;  // a fold is every eighth of them: the rest still spans the recording's range
 // Innovations hardly depend on each other; and an effect may act in a few stretches alone.
@@ -87,7 +87,7 @@ std::vector<Index> rows_where(const std::vector<Index>& block, const Kept& kept)
 }
 
 Index fold_of(const RowSpace& space, Index block) {
-  return block * kStretches / space.block_count() % kFolds;
+  return block * kStretches / space.block_count() % kLeftOutFolds;
 }
 
 // Residuals of every row, the stretches of its fold left out of the fit: in units of the outputs, and
@@ -126,7 +126,7 @@ LeftOut left_out(const Hypotheses& h, const Reduced& all, const Noise& noise, co
   const VectorXd y = whiten(space, noise, data);
   const auto numbers = block_numbers(space);
   LeftOut result{data, y};
-  for (Index fold = 0; fold < kFolds; ++fold) {
+  for (Index fold = 0; fold < kLeftOutFolds; ++fold) {
     const auto kept = rows_where(numbers, [&](Index block) { return fold_of(space, block) != fold; });
     const auto out = rows_where(numbers, [&](Index block) { return fold_of(space, block) == fold; });
     const MatrixXd rest = white(kept, Eigen::all);
@@ -169,7 +169,7 @@ std::vector<Improvement> improvements(Hypotheses& h, const std::vector<Member>& 
     const Index rows = h.space().rows(output);
     const Index first = begin;
     begin += rows;
-    if (!acts || rows < kFolds) continue;
+    if (!acts || rows < kLeftOutFolds) continue;
     const auto blocks = even_blocks(rows, kStretches), short_blocks = even_blocks(rows, kInnovations);
     Improvement entry;
     entry.output = output;

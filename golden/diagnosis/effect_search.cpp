@@ -19,7 +19,7 @@ using Members = std::vector<Member>;
 constexpr double kPerEffect = 14.0;
 constexpr double kPerCoefficient = 4.0;
 constexpr double kPerShape = 3.0;
-constexpr std::size_t kMostEffects = 4;
+constexpr std::size_t kMostMembers = 4;
 constexpr std::size_t kSingleProposals = 6;
 constexpr std::size_t kPairProposals = 3;
 constexpr int kRefinements = 5;
@@ -285,7 +285,7 @@ SearchResult EffectSearch::run() {
   SearchResult result;
   ScoredSet best = scored({});
   result.nothing = best.score;
-  while (best.members.size() < kMostEffects) {
+  while (best.members.size() < kMostMembers) {
     ScoredSet next = best;
     for (auto& proposal : proposals(best.members, best.members.empty())) {
       ScoredSet candidate = pruned(scored(std::move(proposal)));

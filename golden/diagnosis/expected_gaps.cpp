@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 constexpr double kStep_s = 30.0;
 constexpr double kWeaker = 2.0;  // standard errors
-constexpr int kRefinements = 3;
+constexpr int kGapRefinements = 3;
 constexpr std::size_t kRefined = 3;        // nearest rivals of a truth whose shapes are refined
 constexpr double kLongestDelay_s = 300.0;  // beyond it a delay is no rival that a diagnosis would try
 
@@ -171,7 +171,7 @@ bool Comparison::has_form(const std::string& rival, const std::string& form) con
 Comparison::Fitted Comparison::refined(Fitted fitted, const VectorXd& truth) {
   const auto& family = hypotheses_->families()[fitted.member.family];
   double share = 0.5;
-  for (int round = 0; round < kRefinements; ++round, share *= 0.5)
+  for (int round = 0; round < kGapRefinements; ++round, share *= 0.5)
     for (std::size_t d = 0; d < family.spacing.size(); ++d)
       for (const double sign : {1.0, -1.0}) {
         Member moved = fitted.member;

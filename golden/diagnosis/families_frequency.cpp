@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::ArrayXd;
 using Shape = std::vector<double>;
-constexpr double kTimeRatio = 1.6;
+constexpr double kAgeingRatio = 1.6;
 constexpr double kFrequencyLagRatio = 1.5;
 constexpr double kSlowest_s = 600.0;  // what is over sooner is no ageing
 constexpr double kMostAgeing_ppm = 20.0;
@@ -42,26 +42,26 @@ EffectFamily polynomial_order(int terms) {
 }
 
 // How ageing goes on; the same for the resonator and for the clock that it is counted with.
-struct Curve {
+struct AgeingCurve {
   const char* text;
   ArrayXd (*at)(const ArrayXd& time_s, double t0);
   bool shaped;
 };
-constexpr Curve kCurves[] = {
+constexpr AgeingCurve kCurves[] = {
     {"t", [](const ArrayXd& t, double length) -> ArrayXd { return t / length; }, false},
     {"(1 - exp(-t / t0))", [](const ArrayXd& t, double t0) -> ArrayXd { return 1.0 - (-t / t0).exp(); },
      true},
     {"ln(1 + t / t0)", [](const ArrayXd& t, double t0) -> ArrayXd { return (1.0 + t / t0).log(); }, true}};
 
-EffectFamily ageing(const Simulation& s, const Curve& curve, bool of_clock) {
+EffectFamily ageing(const Simulation& s, const AgeingCurve& curve, bool of_clock) {
   EffectFamily family;
   family.effect = of_clock ? "oscillator_ageing" : "frequency_ageing";
   family.form = (of_clock ? "f = f (1 - a " : "f += a ") + std::string(curve.text) + (of_clock ? ")" : "");
   const double length = s.time_s[s.time_s.size() - 1];
   family.grid = {{length}};
   if (curve.shaped) {
-    family.grid = geometric_grid(std::min(kSlowest_s, length), 3.0 * length, kTimeRatio);
-    family.spacing = {kTimeRatio};
+    family.grid = geometric_grid(std::min(kSlowest_s, length), 3.0 * length, kAgeingRatio);
+    family.spacing = {kAgeingRatio};
   }
   const auto shift = curve.at;
   family.columns = [shift, of_clock](const Simulation& at, const Shape& shape) {
@@ -150,7 +150,7 @@ std::vector<EffectFamily> frequency_families(const Simulation& s) {
   const Telemetry& t = *s.telemetry;
   if (!t.has(Output::frequency)) return families;
   for (const bool of_clock : {false, true})
-    for (const Curve& curve : kCurves) families.push_back(ageing(s, curve, of_clock));
+    for (const AgeingCurve& curve : kCurves) families.push_back(ageing(s, curve, of_clock));
   if (moves(t.case_degc, 1.0)) {
     families.push_back(polynomial_order(1));
     families.push_back(polynomial_order(2));

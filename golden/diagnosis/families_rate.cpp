@@ -39,7 +39,7 @@ void name_figure(EffectFamily& family, const char* name, const char* unit) {
 }
 
 // As recorded, which carries what is not in the model; the nominal one where values are missing.
-ArrayXd command(const Simulation& s, Output output) {
+ArrayXd recorded_command(const Simulation& s, Output output) {
   const ArrayXd nominal = s.nominal[output];
   if (!s.telemetry->has(output)) return nominal;
   const ArrayXd recorded = (*s.telemetry)[output];
@@ -53,7 +53,7 @@ void add_commands(std::vector<EffectFamily>& families, const Telemetry& t) {
     families.push_back(in_rate(effect, form, {column}));
     name_figure(families.back(), "gain", "deg/h per V");
   };
-  const auto drive = [](const Simulation& s) { return command(s, Output::drive); };
+  const auto drive = [](const Simulation& s) { return recorded_command(s, Output::drive); };
   if (t.has(Output::drive)) {
     add("damping_anisotropy", "rate += g drive / A",
         [=](const Simulation& s) -> ArrayXd { return drive(s) / amplitude(s); });
@@ -64,14 +64,15 @@ void add_commands(std::vector<EffectFamily>& families, const Telemetry& t) {
   }
   if (!t.has(Output::quadrature)) return;
   add("demodulation_phase", "rate += g quadrature",
-      [](const Simulation& s) { return command(s, Output::quadrature); });
+      [](const Simulation& s) { return recorded_command(s, Output::quadrature); });
   if (!t.has_board || !moves(t.board_degc, 0.5)) return;
   const Column follows = [](const Simulation& s) -> ArrayXd {
-    return command(s, Output::quadrature) * (s.board_degc - 25.0);
+    return recorded_command(s, Output::quadrature) * (s.board_degc - 25.0);
   };
   add("demodulation_phase", "rate += g (Tb - 25) quadrature", follows);
-  families.push_back(in_rate("demodulation_phase", "rate += (g + b (Tb - 25)) quadrature",
-                             {[](const Simulation& s) { return command(s, Output::quadrature); }, follows}));
+  families.push_back(
+      in_rate("demodulation_phase", "rate += (g + b (Tb - 25)) quadrature",
+              {[](const Simulation& s) { return recorded_command(s, Output::quadrature); }, follows}));
   name_figure(families.back(), "gain", "deg/h per V");
 }
 

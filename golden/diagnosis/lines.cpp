@@ -22,7 +22,7 @@ constexpr double kSpectra = 7.0;                   // plain, two harmonics sampl
 constexpr Index kMedianBins = 101;
 constexpr double kSlowRows = 25.0;
 constexpr double kLeastMove_hz = 0.5;
-constexpr int kBits = 20;
+constexpr int kLineBits = 20;
 constexpr Index kStartRows = 60;
 
 struct Peak {
@@ -97,7 +97,7 @@ Line refined(const VectorXd& e, const VectorXd& phase, const Peak& peak, double 
   const auto rows = static_cast<double>(e.size());
   const auto bin = static_cast<double>(peak.bin);
   const auto found = boost::math::tools::brent_find_minima(
-      [&](double at) { return -correlation(e, phase, at / rows); }, bin - 1.0, bin + 1.0, kBits);
+      [&](double at) { return -correlation(e, phase, at / rows); }, bin - 1.0, bin + 1.0, kLineBits);
   const ArrayXd angle =
       phase.array() + kTurn_rad * found.first / rows * ArrayXd::LinSpaced(e.size(), 0.0, rows - 1.0);
   Eigen::MatrixX2d wave(e.size(), 2);

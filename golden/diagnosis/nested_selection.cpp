@@ -17,7 +17,7 @@ using Index = Eigen::Index;
 // Assumptions about the time before the first row, in parts of the recording: none, and the first rows' slope
 // for longer and longer.
 constexpr double kPasts[] = {0.0, 1.0 / 64.0, 1.0 / 32.0, 1.0 / 16.0};
-constexpr std::uint64_t kSeed = 1;
+constexpr std::uint64_t kSelectionSeed = 1;
 
 /// Products of all columns and the rate (the last one), a matrix a block.
 struct Products {
@@ -123,7 +123,8 @@ class Contest {
     // One row a block, whose square is the block's sum: the bootstrap then draws whole blocks.
     std::vector<calibration::RowRange> rows;
     for (Index i = 0; i < before.block_squares.size(); ++i) rows.push_back({i, 1});
-    return bootstrap_gain(before.block_squares.cwiseSqrt(), after.block_squares.cwiseSqrt(), rows, kSeed)
+    return bootstrap_gain(before.block_squares.cwiseSqrt(), after.block_squares.cwiseSqrt(), rows,
+                          kSelectionSeed)
                .low > 0.0;
   }
 

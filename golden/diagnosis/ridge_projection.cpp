@@ -12,9 +12,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr Index kBlocks = 4;
+constexpr Index kProjectionBlocks = 4;
 
-VectorXd ridge(const MatrixXd& normal, const VectorXd& right, double shrink) {
+VectorXd ridge_solution(const MatrixXd& normal, const VectorXd& right, double shrink) {
   MatrixXd heavier = normal;
   heavier.diagonal().tail(normal.cols() - 1).array() += shrink;
   return heavier.ldlt().solve(right);
@@ -31,17 +31,17 @@ Projection project(const MatrixXd& x, const VectorXd& y) {
   for (double share = 1e-12; share < 1e3; share *= 10.0) {
     const double shrink = share * static_cast<double>(n);
     VectorXd left_out(n);
-    for (Index b = 0; b < kBlocks; ++b) {
-      const Index from = n * b / kBlocks, length = n * (b + 1) / kBlocks - from;
+    for (Index b = 0; b < kProjectionBlocks; ++b) {
+      const Index from = n * b / kProjectionBlocks, length = n * (b + 1) / kProjectionBlocks - from;
       const auto block = x.middleRows(from, length);
       left_out.segment(from, length) =
-          block * ridge(normal - block.transpose() * block,
-                        right - block.transpose() * y.segment(from, length), shrink);
+          block * ridge_solution(normal - block.transpose() * block,
+                                 right - block.transpose() * y.segment(from, length), shrink);
     }
     const double squares = (y - left_out).squaredNorm();
     if (squares >= least) continue;
     least = squares;
-    best = {ridge(normal, right, shrink), left_out};
+    best = {ridge_solution(normal, right, shrink), left_out};
   }
   return best;
 }

@@ -22,7 +22,7 @@ using calibration::SettledPoints;
 using Index = Eigen::Index;
 constexpr double kLevel = 0.01;
 constexpr double kSigmas = 5.0;
-constexpr std::uint64_t kSeed = 1;
+constexpr std::uint64_t kTableSeed = 1;
 
 // Gamma(a, z) = exp(-z) z^a / (z + 1 - a - 1 (1 - a) / (z + 3 - a - 2 (2 - a) / ...)), for z > a + 1.
 struct UpperGamma {
@@ -70,7 +70,7 @@ Eigen::VectorXd left_out_hz(const SettledPoints& points, Index order) {
   return error;
 }
 
-double rms(const Eigen::VectorXd& x) {
+double rms_of_table(const Eigen::VectorXd& x) {
   return std::sqrt(x.squaredNorm() / static_cast<double>(x.size()));
 }
 
@@ -125,15 +125,15 @@ void compare_fits(const SettledPoints& points, TableDiagnosis& result) {
   const FrequencyFit& after = result.study.report(result.chosen).fit;
   std::vector<calibration::RowRange> each;
   for (Index i = 0; i < points.frequency_hz.size(); ++i) each.push_back({i, 1});
-  result.train = bootstrap_gain(before.residuals_hz, after.residuals_hz, each, kSeed);
-  result.left_out =
-      bootstrap_gain(left_out_hz(points, result.baseline), left_out_hz(points, result.chosen), each, kSeed);
+  result.train = bootstrap_gain(before.residuals_hz, after.residuals_hz, each, kTableSeed);
+  result.left_out = bootstrap_gain(left_out_hz(points, result.baseline), left_out_hz(points, result.chosen),
+                                   each, kTableSeed);
   result.top_coefficient = after.polynomial.coefficients_hz()[result.chosen];
   const boost::math::students_t_distribution<double> student(static_cast<double>(after.dof));
   result.top_half_width95 = boost::math::quantile(student, 0.975) * after.standard_errors[result.chosen];
   result.ppm_span = 1e6 * span_between(after, before) / points.frequency_hz.mean();
   result.residual_degc =
-      rms(before.residuals_hz.binaryExpr(points.temperature_degc, [&](double hz, double degc) {
+      rms_of_table(before.residuals_hz.binaryExpr(points.temperature_degc, [&](double hz, double degc) {
         return hz / before.polynomial.slope_hz_per_degc(degc);
       }));
   result.chamber_error_degc = chamber_error(points, before, result.rounding_rms_hz);
@@ -177,8 +177,8 @@ TableDiagnosis diagnose_table(const SettledPoints& points, Index baseline) {
   result.rounding_rms_hz = points.resolution_hz / std::sqrt(12.0);
   for (Index order = 1; order <= largest; ++order) {
     const auto& report = result.study.report(order);
-    TableOrder row{order, rms(report.fit.residuals_hz),    report.fit.max_residual_hz,   0.0,
-                   0.0,   rms(left_out_hz(points, order)), report.leave_one_out_max_degc};
+    TableOrder row{order, rms_of_table(report.fit.residuals_hz),    report.fit.max_residual_hz,   0.0,
+                   0.0,   rms_of_table(left_out_hz(points, order)), report.leave_one_out_max_degc};
     if (report.chi_square)
       row.log10_p = log10_chi_square_tail(*report.chi_square, static_cast<double>(report.fit.dof));
     row.minimax_hz = minimax_residual(points.temperature_degc, points.frequency_hz, order);

@@ -75,9 +75,9 @@ double rounded(const Register& about, double value) {
 }
 
 /// One number that some registers depend on.
-class Search {
+class WordSearch {
  public:
-  Search(const RecordedWords& recorded, const Replay& replay, std::size_t first)
+  WordSearch(const RecordedWords& recorded, const Replay& replay, std::size_t first)
       : recorded_(recorded),
         replay_(replay),
         first_(first),
@@ -162,7 +162,7 @@ Differs reach(const std::vector<CoreWords>& nominal, const std::vector<CoreWords
 
 /// Value at which `set(value)` explains the recording, by Newton's steps with halving from the best of
 /// `starts` (loops at their limits make other minima), or nothing.
-std::optional<double> solve(const Search& search, const std::vector<double>& starts, double step,
+std::optional<double> solve(const WordSearch& search, const std::vector<double>& starts, double step,
                             double resolution, const std::function<CoreRegisters(double)>& set,
                             const std::function<bool(double)>& accept) {
   double value = starts.front();
@@ -214,7 +214,7 @@ std::optional<double> solve(const Search& search, const std::vector<double>& sta
   return std::nullopt;
 }
 
-void try_demodulation(const Search& search, const CoreRegisters& nominal, CoreComparison& result) {
+void try_demodulation(const WordSearch& search, const CoreRegisters& nominal, CoreComparison& result) {
   const auto turned = [&](double rad) {
     CoreRegisters registers = nominal;
     const double c = nominal[reg_demodulation_cos], s = nominal[reg_demodulation_sin];
@@ -244,7 +244,7 @@ void try_demodulation(const Search& search, const CoreRegisters& nominal, CoreCo
   result.explaining = turned(found);
 }
 
-void try_register(const Search& search, const CoreRegisters& nominal, RegisterIndex index,
+void try_register(const WordSearch& search, const CoreRegisters& nominal, RegisterIndex index,
                   CoreComparison& result) {
   const Register& about = registers[index];
   const auto with = [&](double value) {
@@ -293,7 +293,7 @@ CoreComparison compare_core(const RecordedWords& recorded, const CoreRegisters& 
   result.first_record = all.first;
   if (!all.first) return result;
   result.block = earliest_block(all.at_first, all.differs);
-  Search search(recorded, replay, *all.first);
+  WordSearch search(recorded, replay, *all.first);
   const auto at = search.trial(nominal);
   search.weigh(at);
   // A phase is the simpler explanation where both registers of it are wrong.

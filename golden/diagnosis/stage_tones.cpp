@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kTone_rad = 2.0 * std::numbers::pi;
 constexpr int kHighest = 40;
 
 // Rising passages through the mean, the first and the last placed between samples.
@@ -88,12 +88,12 @@ void track(const VectorXd& x, double rate_hz, Index piece, Vibration& vibration)
     VectorXcd carrier(length);
     Piece fit{};
     for (int pass = 0; pass < 2; ++pass) {
-      fill_turns(kTurn * hz / rate_hz, 0.0, carrier);
+      fill_turns(kTone_rad * hz / rate_hz, 0.0, carrier);
       fit = fit_piece(x.segment(p * piece, length), carrier);
       if (pass > 0) break;
       // slope of the phase in the middle of the piece
       const double slope_rad = (fit.a1 / fit.a0).imag() * 2.0 / static_cast<double>(length - 1);
-      hz += slope_rad * rate_hz / kTurn;
+      hz += slope_rad * rate_hz / kTone_rad;
     }
     sum_hz += hz;
     for (Index i = 0; i < length; ++i) {
