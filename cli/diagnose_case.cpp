@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/diagnose_case.hpp"
 
-#include "cli/diagnose_report.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <filesystem>
 
 #include "cli/chain_run.hpp"
+#include "cli/diagnose_report.hpp"
 #include "cli/invocation.hpp"
 #include "cli/recording/error.hpp"
 #include "cli/recording/interrupt.hpp"

@@ -12,10 +12,6 @@ using recording::Json;
 
 constexpr const char* kUnknown = "unknown";
 
-bool among(const std::vector<std::string>& ids, const std::string& id) {
-  return std::find(ids.begin(), ids.end(), id) != ids.end();
-}
-
 std::pair<double, double> interval(const Json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>()};
 }
@@ -70,6 +66,10 @@ void read_parts(const Json& document, Answer& answer) {
 }
 
 }  // namespace
+
+bool among(const std::vector<std::string>& ids, const std::string& id) {
+  return std::find(ids.begin(), ids.end(), id) != ids.end();
+}
 
 std::vector<std::string> Answer::names() const {
   std::vector<std::string> issued;

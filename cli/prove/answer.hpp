@@ -58,6 +58,8 @@ struct Answer {
   const Named* find(const std::string& id) const;
 };
 
+bool among(const std::vector<std::string>& ids, const std::string& id);
+
 /// Throws std::runtime_error with the reason where the document is no hemi-diagnosis/1.
 Answer parse_answer(const recording::Json& document);
 

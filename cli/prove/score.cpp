@@ -10,13 +10,9 @@
 namespace hemi::prove {
 namespace {
 
-bool holds_id(const std::vector<std::string>& ids, const std::string& id) {
-  return std::find(ids.begin(), ids.end(), id) != ids.end();
-}
-
 /// Named, or a candidate.
 bool mentioned(const Answer& answer, const std::string& id) {
-  return holds_id(answer.names(), id) || holds_id(answer.candidates(), id);
+  return among(answer.names(), id) || among(answer.candidates(), id);
 }
 
 bool all_mentioned(const Truth& truth, const Answer& answer) {
@@ -51,7 +47,7 @@ std::string concealed(const Truth& truth) {
 std::vector<std::string> wrong_names(const Truth& truth, const Answer& answer) {
   std::vector<std::string> wrong;
   for (const auto& id : answer.names())
-    if (!truth.holds(id) && !holds_id(truth.tolerated, id)) wrong.push_back(id);
+    if (!truth.holds(id) && !among(truth.tolerated, id)) wrong.push_back(id);
   return wrong;
 }
 
@@ -60,7 +56,7 @@ bool false_claim(const Truth& truth, const Answer& answer) {
   if (!answer.claims()) return false;
   if (answer.verdict == "ambiguous") {
     const auto set = answer.candidates();
-    if (std::any_of(set.begin(), set.end(), [&](const auto& id) { return holds_id(truth.tolerated, id); }))
+    if (std::any_of(set.begin(), set.end(), [&](const auto& id) { return among(truth.tolerated, id); }))
       return !wrong_names(truth, answer).empty();
     return true;
   }
@@ -86,7 +82,7 @@ bool right_first(const Truth& truth, const Answer& answer) {
   const std::string& id = truth.effects.at(0).id;
   if (answer.verdict == "named") return !names.empty() && names.front() == id;
   // Where telemetry cannot decide, the set that holds the truth is the right answer.
-  return !truth.set.empty() && names.empty() && holds_id(answer.candidates(), id);
+  return !truth.set.empty() && names.empty() && among(answer.candidates(), id);
 }
 
 bool right(const Truth& truth, const Answer& answer, std::string& why) {
@@ -117,10 +113,10 @@ bool resolves(const Truth& truth, const Answer& answer) {
   static const std::vector<std::string> kOfOneClock{"frequency_ageing", "oscillator_ageing"};
   if (!wrong_names(truth, answer).empty()) return false;
   const std::string& id = truth.effects.back().id;
-  if (answer.verdict == "named") return holds_id(answer.names(), id);
+  if (answer.verdict == "named") return among(answer.names(), id);
   const auto left = answer.candidates();
-  return holds_id(kOfOneClock, id) && holds_id(left, id) &&
-         std::all_of(left.begin(), left.end(), [&](const auto& one) { return holds_id(kOfOneClock, one); });
+  return among(kOfOneClock, id) && among(left, id) &&
+         std::all_of(left.begin(), left.end(), [&](const auto& one) { return among(kOfOneClock, one); });
 }
 
 void Score::add_experiment(const Truth& truth, const Answer& answer) {
@@ -167,7 +163,7 @@ void Score::add_names(const Truth& truth, const Answer& answer) {
   std::string why;
   if (truth.cls == "poor") poor_.add(right(truth, answer, why));
   for (const auto& id : answer.names()) {
-    const bool is_wrong = holds_id(wrong, id);
+    const bool is_wrong = among(wrong, id);
     wrong_names_.add(is_wrong);
     const Named* effect = answer.find(id);
     if (effect != nullptr && effect->probability) stated_.emplace_back(*effect->probability, !is_wrong);
@@ -186,7 +182,7 @@ void Score::add_names(const Truth& truth, const Answer& answer) {
 void Score::add_parameters(const Truth& truth, const Answer& answer) {
   for (const HiddenTruth& effect : truth.effects) {
     const Named* named = answer.find(effect.id);
-    if (named == nullptr || !holds_id(answer.names(), effect.id)) continue;
+    if (named == nullptr || !among(answer.names(), effect.id)) continue;
     for (const auto& [name, value] : effect.parameters) {
       const auto stated = named->parameters.find(name);
       if (stated == named->parameters.end()) continue;

@@ -18,11 +18,11 @@ namespace hemi::scenario {
 namespace {
 
 using physics::Instrument;
+using physics::kReferenceDegc;
+using physics::kTwoPi;
 using Coefficients = std::vector<double>;
 
-constexpr double kReferenceDegc = 20.0;       // of the instrument's damping and split
 constexpr double kAdcFullScaleLsb = 32768.0;  // noise is given in LSB of 16 bits
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// The same polynomial about reference + shift: repeated synthetic division.

@@ -13,6 +13,7 @@
 #include "golden/calibration/autoregressive_noise.hpp"
 #include "golden/diagnosis/bench_search.hpp"
 #include "golden/diagnosis/equation_error.hpp"
+#include "golden/diagnosis/series.hpp"
 
 namespace hemi::diagnosis {
 namespace {
@@ -22,10 +23,6 @@ constexpr Eigen::Index kFewestRows = 1024;
 constexpr double kSignificance = 0.01;
 constexpr Eigen::Index kLags = 32;
 constexpr int kDecoysEach = 6;
-
-double rms(const Eigen::VectorXd& r) {
-  return std::sqrt(r.squaredNorm() / static_cast<double>(r.size()));
-}
 
 // Ljung and Box over kLags lags.
 double white_p(const Eigen::VectorXd& residual) {

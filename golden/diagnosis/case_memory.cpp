@@ -10,6 +10,8 @@
 #include <cmath>
 #include <limits>
 
+#include "golden/diagnosis/series.hpp"
+
 namespace hemi::diagnosis {
 namespace {
 
@@ -23,10 +25,6 @@ constexpr Index kTestBlocks = 20;
 
 std::size_t at(MemoryFamily family) {
   return static_cast<std::size_t>(family);
-}
-
-double rms_of(const Eigen::VectorXd& x) {
-  return std::sqrt(x.squaredNorm() / static_cast<double>(x.size()));
 }
 
 Eigen::MatrixXd averages(const Eigen::MatrixXd& rows) {
@@ -136,7 +134,7 @@ class Judge {
 
   void families() {
     for (const MemoryFamily family : kMemoryFamilies)
-      if (rms_of(selection_.held_out[at(family)]) < rms_of(selection_.held_out[at(result_.best)]))
+      if (rms(selection_.held_out[at(family)]) < rms(selection_.held_out[at(result_.best)]))
         result_.best = family;
     for (const MemoryFamily family : kMemoryFamilies) {
       FamilyReport report{family, gain(MemoryFamily::polynomial, family), gain(family, result_.best), false};
@@ -174,8 +172,8 @@ class Judge {
     MemoryFamily least = MemoryFamily::polynomial;
     double value = std::numeric_limits<double>::infinity();
     for (const MemoryFamily family : kMemoryFamilies) {
-      if (holds(family, memory) != with || !(rms_of(selection_.held_out[at(family)]) < value)) continue;
-      value = rms_of(selection_.held_out[at(family)]);
+      if (holds(family, memory) != with || !(rms(selection_.held_out[at(family)]) < value)) continue;
+      value = rms(selection_.held_out[at(family)]);
       least = family;
     }
     return least;
@@ -186,11 +184,10 @@ class Judge {
     std::vector<Eigen::VectorXd> others;
     for (const MemoryFamily family : kMemoryFamilies)
       if (!holds(family, memory)) others.push_back(selection_.held_out[at(family)]);
-    FoundMemory result{
-        memory,
-        share_won(selection_.held_out[at(with)], others, selection_.blocks, kSeed),
-        std::log(rms_of(selection_.held_out[at(without)]) / rms_of(selection_.held_out[at(with)])),
-        {}};
+    FoundMemory result{memory,
+                       share_won(selection_.held_out[at(with)], others, selection_.blocks, kSeed),
+                       std::log(rms(selection_.held_out[at(without)]) / rms(selection_.held_out[at(with)])),
+                       {}};
     const ChosenForm& chosen = selection_.whole.best[at(with)];
     const C& columns = selection_.columns[chosen.form.past];
     switch (memory) {
@@ -296,7 +293,7 @@ CaseMemory diagnose_case(const CaseRows& rows, const std::function<void()>& tick
   result.train = bootstrap_gain(selection.train[polynomial], selection.train[at(selection.whole.chosen)],
                                 selection.blocks, kSeed);
   const Index n = rows.rate_dph.size();
-  result.floor_rms_dph = rms_of(rows.rate_dph.tail(n - 1) - rows.rate_dph.head(n - 1)) / std::sqrt(2.0);
+  result.floor_rms_dph = rms(rows.rate_dph.tail(n - 1) - rows.rate_dph.head(n - 1)) / std::sqrt(2.0);
   Judge judge(result);
   judge.families();
   run_decoys(rows, tick, result);

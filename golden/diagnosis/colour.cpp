@@ -142,7 +142,7 @@ Colour colour_of(Hypotheses& hypotheses, const std::vector<Member>& members, con
       sample_variance(coloured_noise(alone, space.block_count()), space.block_count());
   // Within a block 1/f noise goes on: ln 6 of a decade of six holds `flicker`.
   const double within =
-      alone.flicker / std::log(6.0) * std::log(std::max(1.0, static_cast<double>(space.block_rows())));
+      alone.flicker / kFlickerPerProcess * std::log(std::max(1.0, static_cast<double>(space.block_rows())));
   colour.flicker = std::sqrt(variance + within);
   colour.flicker_rthz = std::sqrt(alone.flicker / kFlickerPerProcess);
   colour.log_deviation =

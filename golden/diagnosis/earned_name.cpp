@@ -183,18 +183,22 @@ std::vector<Improvement> improvements(Hypotheses& h, const std::vector<Member>& 
   return list;
 }
 
-Gain gain_left_out(Hypotheses& h, const std::vector<Member>& members, const HypothesisFit& fit,
-                   std::size_t which, Output output) {
-  std::vector<Member> others = members;
-  others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
-  const HypothesisFit rest = h.fit(others, fit.noise);
-  const VectorXd before = left_out(h, extended(h, others, rest).rows, fit.noise, rest.coefficients).white;
+std::vector<Gain> gains_left_out(Hypotheses& h, const std::vector<Member>& members, const HypothesisFit& fit,
+                                 const std::vector<Output>& outputs) {
   const VectorXd after = left_out(h, extended(h, members, fit).rows, fit.noise, fit.coefficients).white;
-  Index first = 0;
-  for (std::size_t k = 0; k < place(output); ++k) first += h.space().rows(kOutputs[k]);
-  const Index rows = h.space().rows(output);
-  return bootstrap_gain(before.segment(first, rows), after.segment(first, rows),
-                        even_blocks(rows, kInnovations), 13);
+  std::vector<Gain> gains;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    std::vector<Member> others = members;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    const HypothesisFit rest = h.fit(others, fit.noise);
+    const VectorXd before = left_out(h, extended(h, others, rest).rows, fit.noise, rest.coefficients).white;
+    Index first = 0;
+    for (std::size_t k = 0; k < place(outputs[i]); ++k) first += h.space().rows(kOutputs[k]);
+    const Index rows = h.space().rows(outputs[i]);
+    gains.push_back(bootstrap_gain(before.segment(first, rows), after.segment(first, rows),
+                                   even_blocks(rows, kInnovations), 13));
+  }
+  return gains;
 }
 
 std::vector<std::vector<Interval>> intervals(Hypotheses& h, const std::vector<Member>& members,

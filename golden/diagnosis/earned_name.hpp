@@ -23,10 +23,10 @@ struct Improvement {
 std::vector<Improvement> improvements(Hypotheses& hypotheses, const std::vector<Member>& members,
                                       const HypothesisFit& fit);
 
-/// What a member gains on stretches left out beside all other members: whitened residuals of the rows of one
-/// output, as Improvement::held_out_white.
-Gain gain_left_out(Hypotheses& hypotheses, const std::vector<Member>& members, const HypothesisFit& fit,
-                   std::size_t which, Output output);
+/// What each of several members gains on stretches left out beside all others: whitened residuals of the rows
+/// of its entry of `outputs`, as Improvement::held_out_white.
+std::vector<Gain> gains_left_out(Hypotheses& hypotheses, const std::vector<Member>& members,
+                                 const HypothesisFit& fit, const std::vector<Output>& outputs);
 
 /// A figure with its 95 % interval.
 struct Interval {

@@ -55,6 +55,11 @@ void explain(TelemetryDiagnosis& result, const SearchResult& found) {
   result.baseline = h.fit({}, result.final.noise);
   const auto figures = intervals(h, result.members, result.final);
   result.improvement = improvements(h, result.members, result.final);
+  std::vector<Output> mains;
+  for (std::size_t i = 0; i < result.members.size(); ++i)
+    mains.push_back(main_output(h, result.members[i], result.final, i));
+  std::vector<Gain> alone;
+  if (mains.size() > 1) alone = gains_left_out(h, result.members, result.final, mains);
   for (std::size_t i = 0; i < result.members.size(); ++i) {
     const auto& family = h.families()[result.members[i].family];
     Explanation entry;
@@ -76,11 +81,10 @@ void explain(TelemetryDiagnosis& result, const SearchResult& found) {
     entry.coefficients.assign(c.begin(), c.end());
     entry.trace = summed(traces, c);
     const auto disagreement = halves_disagree(h, result.members, i, result.final);
-    const Output main = main_output(h, result.members[i], result.final, i);
-    const bool better = std::ranges::any_of(result.improvement, [&](const Improvement& gain) {
-      if (gain.output != main || gain.held_out_white.low <= 0.0) return false;
-      return result.members.size() == 1 || gain_left_out(h, result.members, result.final, i, main).low > 0.0;
-    });
+    const bool better = (alone.empty() || alone[i].low > 0.0) &&
+                        std::ranges::any_of(result.improvement, [&](const Improvement& gain) {
+                          return gain.output == mains[i] && gain.held_out_white.low > 0.0;
+                        });
     if (result.members.size() > 1 && gain_beside_forms(h, result.members, result.final, i) <
                                          kWorth + EffectSearch(h).penalty(result.members[i])) {
       entry.doubt = "the others' equations may be inexact by as much";

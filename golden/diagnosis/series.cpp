@@ -83,6 +83,10 @@ double median(const Eigen::VectorXd& values) {
   return median(std::vector<double>(values.begin(), values.end()));
 }
 
+double rms(const Eigen::VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+}
+
 double robust_deviation(std::vector<double> values) {
   for (double& value : values) value = std::abs(value);
   return median(std::move(values)) / 0.674489750196082;

@@ -30,6 +30,9 @@ Eigen::ArrayXd late(const Eigen::ArrayXd& x, double rows);
 double median(std::vector<double> values);
 double median(const Eigen::VectorXd& values);
 
+/// Root mean square of one value at least.
+double rms(const Eigen::VectorXd& values);
+
 /// Standard deviation of Gaussian noise from the median of |x|.
 double robust_deviation(std::vector<double> values);
 

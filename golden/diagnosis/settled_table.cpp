@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "golden/calibration/linear_fit.hpp"
+#include "golden/diagnosis/series.hpp"
 
 namespace hemi::diagnosis {
 namespace {
@@ -68,10 +69,6 @@ Eigen::VectorXd left_out_hz(const SettledPoints& points, Index order) {
     error[i] = points.frequency_hz[i] - calibration::fit_frequency(without(points, i), order)
                                             .polynomial.frequency_hz(points.temperature_degc[i]);
   return error;
-}
-
-double rms_of_table(const Eigen::VectorXd& x) {
-  return std::sqrt(x.squaredNorm() / static_cast<double>(x.size()));
 }
 
 // Scatter s of the temperatures at which sum r^2 / (rounding^2 + (f' s)^2) comes to the degrees of freedom.
@@ -133,7 +130,7 @@ void compare_fits(const SettledPoints& points, TableDiagnosis& result) {
   result.top_half_width95 = boost::math::quantile(student, 0.975) * after.standard_errors[result.chosen];
   result.ppm_span = 1e6 * span_between(after, before) / points.frequency_hz.mean();
   result.residual_degc =
-      rms_of_table(before.residuals_hz.binaryExpr(points.temperature_degc, [&](double hz, double degc) {
+      rms(before.residuals_hz.binaryExpr(points.temperature_degc, [&](double hz, double degc) {
         return hz / before.polynomial.slope_hz_per_degc(degc);
       }));
   result.chamber_error_degc = chamber_error(points, before, result.rounding_rms_hz);
@@ -177,8 +174,8 @@ TableDiagnosis diagnose_table(const SettledPoints& points, Index baseline) {
   result.rounding_rms_hz = points.resolution_hz / std::sqrt(12.0);
   for (Index order = 1; order <= largest; ++order) {
     const auto& report = result.study.report(order);
-    TableOrder row{order, rms_of_table(report.fit.residuals_hz),    report.fit.max_residual_hz,   0.0,
-                   0.0,   rms_of_table(left_out_hz(points, order)), report.leave_one_out_max_degc};
+    TableOrder row{order, rms(report.fit.residuals_hz),    report.fit.max_residual_hz,   0.0,
+                   0.0,   rms(left_out_hz(points, order)), report.leave_one_out_max_degc};
     if (report.chi_square)
       row.log10_p = log10_chi_square_tail(*report.chi_square, static_cast<double>(report.fit.dof));
     row.minimax_hz = minimax_residual(points.temperature_degc, points.frequency_hz, order);

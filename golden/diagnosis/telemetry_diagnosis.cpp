@@ -192,7 +192,7 @@ double jumps(const TelemetryDiagnosis& result, Output output) {
 
 // Deviation over the recording; a walk's about its mean is its end's over sqrt 6.
 double drift_of(const Colour& colour, const Simulation& s) {
-  const double duration_s = s.telemetry->step_s * static_cast<double>(s.telemetry->case_degc.size());
+  const double duration_s = s.telemetry->step_s * static_cast<double>(s.telemetry->rows());
   return colour.walk_over_flicker > 0.0 ? colour.walk * std::sqrt(duration_s / 6.0) : colour.flicker;
 }
 
