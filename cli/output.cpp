@@ -9,8 +9,6 @@
 namespace hemi::cli {
 namespace {
 
-// Amplitude 1 in recordings is the nominal set point, 0.8 of the ADC's full scale.
-constexpr double nominal_amplitude = 0.8;
 constexpr double ticks_averaged = 2.0 * config::ticks_per_output;
 
 }  // namespace

@@ -26,7 +26,6 @@ constexpr double default_window_s = 20.0;
 // The open-loop rate of the nominal resonator: in-phase secondary over primary = kappa tau W.
 constexpr double nominal_kappa = 0.554;
 constexpr double nominal_tau_s = 719.0;
-constexpr double unit_amplitude = 0.8;
 
 double polynomial(const std::vector<double>& coefficients, double x) {
   double y = 0.0;
@@ -48,7 +47,7 @@ void set_loop(Setup& setup) {
   const double dph_per_ratio = 1.0 / (nominal_kappa * nominal_tau_s) * 180.0 / std::numbers::pi * 3600.0;
   const double gain = 0.5 * std::pow(s.decimation, config::cic_order) /
                       std::ldexp(1.0, config::growth_bits(s.decimation, config::cic_order)) * 49.0 / 64.0;
-  setup.values[config::reg_rate_gain] = dph_per_ratio / (unit_amplitude * gain) / 625.0;
+  setup.values[config::reg_rate_gain] = dph_per_ratio / (nominal_amplitude * gain) / 625.0;
 }
 
 /// slope_shift and slope_gain for blocks of M outputs: derivative = slope / full scale (docs/chain.md).

@@ -16,6 +16,9 @@ namespace hemi::cli {
 /// df/dt at full scale of the derivative word [Hz/s]: 30 times the fastest chamber ramp of the paper.
 inline constexpr double derivative_full_scale_hz_per_s = 0.125;
 
+/// Amplitude 1 in recordings is the nominal set point: this share of the ADC's full scale.
+inline constexpr double nominal_amplitude = 0.8;
+
 /// The core's registers for one job, and what its words mean in that job's own units.
 struct Setup {
   bool wide = false;             ///< instrument: config::Wide, else config::Reference

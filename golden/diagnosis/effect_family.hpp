@@ -10,6 +10,9 @@
 
 namespace hemi::diagnosis {
 
+/// Powers of a rate are told in shares of this.
+inline constexpr double kFullRate_dph = 1e5;
+
 /// A figure of an effect, by the name and unit of the catalogue.
 struct Figure {
   std::string name;

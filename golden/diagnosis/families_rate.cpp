@@ -12,7 +12,6 @@ using Eigen::ArrayXd;
 using Shape = std::vector<double>;
 constexpr double kEarth_dph = 15.041;
 constexpr double kDelayRatio = 1.35;
-constexpr double kFullRate_dph = 1e5;
 
 using Column = std::function<ArrayXd(const Simulation&)>;
 

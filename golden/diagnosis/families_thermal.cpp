@@ -11,7 +11,6 @@ using Eigen::ArrayXd;
 using Shape = std::vector<double>;
 constexpr double kThermalLagRatio = 1.35;
 constexpr double kRadiusRatio = 1.5;
-constexpr double kLeastSwing_degc = 1.0;
 constexpr double kLongestSeries_s = 600.0;
 constexpr double kFastPart = 0.15;
 

@@ -162,8 +162,6 @@ Trace Simulation::thermal(const ArrayXd& warmer) const {
 
 namespace {
 
-// Below this all but the linear terms are noise of the thermometer.
-constexpr double kLeastDriveSwing_degc = 1.0;
 constexpr double kDecay_s = 2000.0;
 constexpr const char* kBiasNames[kBiasTermCount] = {"1",    "f",    "f^2",  "f^3",    "df",
                                                     "df^2", "df^3", "f*df", "f^2*df", "f*df^2"};
@@ -177,8 +175,7 @@ ArrayXd power(const ArrayXd& x, std::size_t exponent) {
 void add_polynomial(std::vector<BaselineColumn>& columns, const Simulation& s, Output output,
                     const Polynomial& polynomial, const char* name) {
   if (!s.telemetry->has(output)) return;
-  const std::size_t terms =
-      span(s.smooth_case_degc) < kLeastDriveSwing_degc ? 2 : polynomial.coefficients.size();
+  const std::size_t terms = span(s.smooth_case_degc) < kLeastSwing_degc ? 2 : polynomial.coefficients.size();
   for (std::size_t i = 0; i < std::min(terms, polynomial.coefficients.size()); ++i) {
     ArrayXd column = power(s.smooth_degc - polynomial.reference, i);
     if (output != Output::frequency) column *= s.telemetry->amplitude.array();
@@ -250,12 +247,12 @@ std::vector<BaselineColumn> baseline_columns(const Simulation& s) {
   const double swing = span(s.smooth_case_degc);
   // A resonator that has not settled shows its start at any temperature, its time constant at none.
   if (s.telemetry->has_case && s.model.time_constant_s > 0.0) add_start(columns, s);
-  if (s.telemetry->has_case && swing > kLeastDriveSwing_degc) add_thermal(columns, s);
+  if (s.telemetry->has_case && swing > kLeastSwing_degc) add_thermal(columns, s);
   if (s.telemetry->has_case && s.model.time_constant_s > 0.0) add_restarts(columns, s);
   if (s.telemetry->has(Output::rate)) {
     const auto terms = bias_terms(s.smooth_f, slope_in_time(s.smooth_f, s.telemetry->step_s));
     for (std::size_t i = 0; i < kBiasTermCount; ++i) {
-      if (swing < kLeastDriveSwing_degc && i != 0 && i != 1 && i != 4) continue;  // 1, f, df
+      if (swing < kLeastSwing_degc && i != 0 && i != 1 && i != 4) continue;  // 1, f, df
       BaselineColumn entry{.name = fmt::format("bias.terms_dph.{}", kBiasNames[i]), .trace = {}};
       entry.trace[Output::rate] = terms[i];
       columns.push_back(std::move(entry));
@@ -266,7 +263,7 @@ std::vector<BaselineColumn> baseline_columns(const Simulation& s) {
       columns.push_back(std::move(scale));
   }
   add_polynomial(columns, s, Output::drive, s.model.drive_v, "drive.coefficients_v");
-  if (s.telemetry->has(Output::drive) && swing > kLeastDriveSwing_degc) add_decay(columns, s);
+  if (s.telemetry->has(Output::drive) && swing > kLeastSwing_degc) add_decay(columns, s);
   add_polynomial(columns, s, Output::quadrature, s.model.quadrature_v, "quadrature.coefficients_v");
   return columns;
 }

@@ -45,6 +45,9 @@ std::vector<Restart> restarts(const Telemetry& telemetry, double tau_s);
 ///     T[0] = case[0] + start, T behind the case by one time constant; frequency = p(T);
 ///     drive = amplitude p_D(T); quadrature = amplitude p_Q(T) + trim; rate = scale rate_in + B(f, df)
 inline constexpr double kSmoothing_s = 150.0;
+/// A case that moves by less shows its thermometer's noise: of a polynomial in it only the linear term is
+/// free.
+inline constexpr double kLeastSwing_degc = 1.0;
 struct Simulation {
   const Telemetry* telemetry = nullptr;
   NominalModel model;

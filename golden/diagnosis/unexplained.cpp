@@ -18,8 +18,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLeastFreeSwing_degc = 1.0;
-constexpr double kFreeRate_dph = 1e5;
 constexpr double kMemories_s[] = {300.0, 900.0, 2700.0};
 
 struct Variable {
@@ -35,7 +33,7 @@ std::vector<Variable> variables_of(const Simulation& s) {
   };
   add("time_s", s.time_s);
   // A thermometer that shows nothing but its noise orders the noise that it makes itself.
-  if (span(s.smooth_case_degc) > kLeastFreeSwing_degc) {
+  if (span(s.smooth_case_degc) > kLeastSwing_degc) {
     add("resonator_temp_degc", s.smooth_degc);
     add("resonator_temp_slope_degc_s", slope_in_time(s.smooth_degc, t.step_s));
     add("case_temp_degc", s.smooth_case_degc);
@@ -49,7 +47,7 @@ std::vector<Variable> variables_of(const Simulation& s) {
   // What is past may act on: both the signed and the squared rate, behind one lag.
   if (moves(t.rate_in_dph, 1.0))
     for (const double tau_s : kMemories_s) {
-      const ArrayXd rate = t.rate_in_dph.array() / kFreeRate_dph;
+      const ArrayXd rate = t.rate_in_dph.array() / kFullRate_dph;
       const auto name = [&](const char* of) { return fmt::format("{} behind {:.0f} s", of, tau_s); };
       list.push_back({name("rate_in_dph"), lag(rate, t.step_s, tau_s, rate[0])});
       list.push_back({name("rate_in_dph squared"), lag(rate.square(), t.step_s, tau_s, rate[0] * rate[0])});
