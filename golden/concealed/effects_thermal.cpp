@@ -99,7 +99,7 @@ Form gradient(const Setting& in) {
 
 Form hysteresis(const Setting& in) {
   Form form;
-  Series memory;
+  Memory memory;
   const Series &shell = in.baseline.shell_degc, &first = in.sizing().baseline.shell_degc;
   switch (in.random.index(3)) {
     case 0:
@@ -116,8 +116,10 @@ Form hysteresis(const Setting& in) {
   }
   form.high = 2.0;
   form.sign = in.random.sign();
-  form.at = [memory](double height) { return adding(Stage::kRate, kRate, memory, height); };
-  form.parameters = [](double height) { return Values{{"loop_height", std::abs(height)}}; };
+  form.at = [memory](double height) { return adding(Stage::kRate, kRate, memory.along, height); };
+  form.parameters = [memory](double height) {
+    return Values{{"loop_height", std::abs(height) * memory.opening}};
+  };
   return form;
 }
 

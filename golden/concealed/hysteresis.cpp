@@ -6,17 +6,28 @@
 namespace hemi::concealed {
 namespace {
 
+/// Twice around from -1 to 1 and back; the second time counts.
+template <typename Operator>
+double opening(const Operator& memory) {
+  constexpr Eigen::Index kWay = 500;
+  const Series up = Series::LinSpaced(kWay, -1.0, 1.0), down = up.reverse();
+  Series loop(4 * kWay);
+  loop << up, down, up, down;
+  const Series around = memory(loop);
+  return (around.segment(2 * kWay, kWay) - around.tail(kWay).reverse()).abs().maxCoeff();
+}
+
 /// The operator over x in units of the first run's half range, in units of its height there.
 template <typename Operator>
-Series sized(const Series& x, const Series& first, const Operator& memory) {
+Memory sized(const Series& x, const Series& first, const Operator& memory) {
   const double low = first.minCoeff(), high = first.maxCoeff();
   const auto scaled = [&](const Series& at) -> Series {
     return (at - 0.5 * (low + high)) / std::max(0.5 * (high - low), 1e-9);
   };
   const Series there = memory(scaled(first));
   const double height = there.maxCoeff() - there.minCoeff();
-  if (height < 1e-12) return Series::Zero(x.size());
-  return (memory(scaled(x)) - there.mean()) / height;
+  if (height < 1e-12) return {Series::Zero(x.size()), 0.0};
+  return {(memory(scaled(x)) - there.mean()) / height, opening(memory) / height};
 }
 
 struct Relay {
@@ -88,15 +99,15 @@ Series bouc_wen_of(const Series& u, double c, double b) {
 
 }  // namespace
 
-Series preisach(const Series& x, const Series& first, double width, double spread) {
+Memory preisach(const Series& x, const Series& first, double width, double spread) {
   return sized(x, first, [=](const Series& u) { return relayed(u, width, spread); });
 }
 
-Series duhem(const Series& x, const Series& first, double c) {
+Memory duhem(const Series& x, const Series& first, double c) {
   return sized(x, first, [=](const Series& u) { return duhem_of(u, c); });
 }
 
-Series bouc_wen(const Series& x, const Series& first, double c, double b) {
+Memory bouc_wen(const Series& x, const Series& first, double c, double b) {
   return sized(x, first, [=](const Series& u) { return bouc_wen_of(u, c, b); });
 }
 

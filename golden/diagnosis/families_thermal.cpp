@@ -94,6 +94,21 @@ EffectFamily gradient_of_two(const Simulation& s) {
   return family;
 }
 
+// Down, up and down again over the recording's range of T, kLoopRows rows each way.
+constexpr Eigen::Index kLoopRows = 400;
+ArrayXd full_loop(const Simulation& s) {
+  const ArrayXd down = ArrayXd::LinSpaced(kLoopRows, s.smooth_degc.maxCoeff(), s.smooth_degc.minCoeff());
+  ArrayXd way(3 * kLoopRows);
+  way << down, down.reverse(), down;
+  return way;
+}
+
+// Loop height: largest difference between the ways up and down over the full range. A function of T alone has none.
+double opening(const ArrayXd& along_full_loop) {
+  const ArrayXd up = along_full_loop.segment(kLoopRows, kLoopRows);
+  return (up - along_full_loop.tail(kLoopRows).reverse()).abs().maxCoeff();
+}
+
 // Radii as shares of the half range of T, one column each.
 EffectFamily hysteresis(std::vector<Shape> grid, bool shaped) {
   EffectFamily family;
@@ -108,12 +123,12 @@ EffectFamily hysteresis(std::vector<Shape> grid, bool shaped) {
       columns.push_back(in_rate(play(s.smooth_degc, radius(s, share)) - s.smooth_degc));
     return columns;
   };
-  // The operator's own swing; what of it is a function of T alone the bias model takes, which is why the
-  // columns are less T.
+  // What is a function of T alone the bias model takes, which is why the columns are less T.
   family.figures = [radius](const Simulation& s, const Shape& c, const Shape& radii) {
-    ArrayXd sum = ArrayXd::Zero(s.smooth_degc.size());
-    for (std::size_t i = 0; i < radii.size(); ++i) sum += c[i] * play(s.smooth_degc, radius(s, radii[i]));
-    return std::vector<Figure>{{"loop_height", "deg/h", span(sum)}};
+    const ArrayXd way = full_loop(s);
+    ArrayXd sum = ArrayXd::Zero(way.size());
+    for (std::size_t i = 0; i < radii.size(); ++i) sum += c[i] * play(way, radius(s, radii[i]));
+    return std::vector<Figure>{{"loop_height", "deg/h", opening(sum)}};
   };
   return family;
 }
@@ -126,9 +141,7 @@ EffectFamily exponential_hysteresis() {
   family.form = "rate += w h, h' = (T' - |T'| h) / L";
   family.grid = geometric_grid(0.05, 1.6, kRadiusRatio);
   family.spacing = {kRadiusRatio};
-  const auto memory = [](const Simulation& s, const Shape& shape) {
-    const double length = 0.5 * shape[0] * span(s.smooth_degc);
-    const ArrayXd& t = s.smooth_degc;
+  const auto memory = [](const ArrayXd& t, double length) {
     ArrayXd h = ArrayXd::Zero(t.size());
     for (Eigen::Index i = 1; i < t.size(); ++i) {
       const double step = (t[i] - t[i - 1]) / length;
@@ -136,11 +149,13 @@ EffectFamily exponential_hysteresis() {
     }
     return h;
   };
-  family.columns = [memory](const Simulation& s, const Shape& shape) {
-    return std::vector<Trace>{in_rate(memory(s, shape))};
+  const auto length = [](const Simulation& s, double share) { return 0.5 * share * span(s.smooth_degc); };
+  family.columns = [=](const Simulation& s, const Shape& shape) {
+    return std::vector<Trace>{in_rate(memory(s.smooth_degc, length(s, shape[0])))};
   };
-  family.figures = [memory](const Simulation& s, const Shape& c, const Shape& shape) {
-    return std::vector<Figure>{{"loop_height", "deg/h", std::abs(c[0]) * span(memory(s, shape))}};
+  family.figures = [=](const Simulation& s, const Shape& c, const Shape& shape) {
+    const double height = opening(memory(full_loop(s), length(s, shape[0])));
+    return std::vector<Figure>{{"loop_height", "deg/h", std::abs(c[0]) * height}};
   };
   return family;
 }

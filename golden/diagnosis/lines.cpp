@@ -24,6 +24,8 @@ constexpr double kSlowRows = 25.0;
 constexpr double kLeastMove_hz = 0.5;
 constexpr int kLineBits = 20;
 constexpr Index kStartRows = 60;
+constexpr double kLeastWindowRatio = 6.0;
+constexpr Index kMostWindows = 32;
 
 struct Peak {
   double ratio = 0.0;  // power over the local median's mean
@@ -76,15 +78,32 @@ double correlation(const VectorXd& e, const VectorXd& phase, double cycles) {
   return std::abs(sum);
 }
 
-// Scatter of the amplitude over the quarters of a recording: a line need not be steady.
-double swelling(const Eigen::MatrixX2d& wave, const VectorXd& e) {
-  Eigen::Array4d parts;
-  const Index rows = e.size() / 4;
-  for (Index k = 0; k < 4; ++k) {
+struct Amplitude {
+  double value, deviation;
+};
+
+// Window by window, each with a phase of its own: a carrier's phase is summed up from recorded frequencies, whose
+// noise makes it wander, and one phase for all rows took up to a tenth off the amplitude. `ratio`: power of the line
+// over the noise's, whose `level` is that of a bin of `valid` rows. With E|a_k|^2 = A^2 + s^2 of a window,
+// A^2 = mean |a_k|^2 - s^2, var A^2 = (2 A^2 s^2 + s^4) / windows, or by the windows' own scatter if that is more: a
+// line need not be steady.
+Amplitude by_windows(const Eigen::MatrixX2d& wave, const VectorXd& e, double ratio, double level, double valid) {
+  const Index windows = std::clamp<Index>(static_cast<Index>(ratio / kLeastWindowRatio), 1, kMostWindows);
+  const Index rows = e.size() / windows;
+  ArrayXd squares(windows);
+  for (Index k = 0; k < windows; ++k) {
     const auto here = wave.middleRows(k * rows, rows);
-    parts[k] = (here.transpose() * here).ldlt().solve(here.transpose() * e.segment(k * rows, rows)).norm();
+    squares[k] =
+        (here.transpose() * here).ldlt().solve(here.transpose() * e.segment(k * rows, rows)).squaredNorm();
   }
-  return std::sqrt((parts - parts.mean()).square().sum() / 3.0);
+  const double share = static_cast<double>(e.size()) / valid;  // missing rows are zeros in e
+  squares *= share * share;
+  const auto count = static_cast<double>(windows);
+  const double noise = 4.0 * level * count / (valid * valid);
+  const double square = std::max(squares.mean() - noise, 0.5 * noise);
+  const double scatter = (squares - squares.mean()).square().sum() / std::max(count - 1.0, 1.0);
+  const double variance = std::max(2.0 * square * noise + noise * noise, scatter) / count;
+  return {std::sqrt(square), 0.5 * std::sqrt(variance / square)};
 }
 
 using HighPass = std::function<VectorXd(const VectorXd&)>;
@@ -103,9 +122,9 @@ Line refined(const VectorXd& e, const VectorXd& phase, const Peak& peak, double 
   Eigen::MatrixX2d wave(e.size(), 2);
   wave << pass(angle.cos().matrix()), pass(angle.sin().matrix());
   Line line;
-  // Missing rows are zeros in e.
-  line.amplitude = (wave.transpose() * wave).ldlt().solve(wave.transpose() * e).norm() * rows / valid;
-  line.amplitude_deviation = std::max(std::sqrt(2.0 * peak.level) / valid, swelling(wave, e) / 2.0);
+  const Amplitude amplitude = by_windows(wave, e, peak.ratio, peak.level, valid);
+  line.amplitude = amplitude.value;
+  line.amplitude_deviation = amplitude.deviation;
   line.frequency_hz = found.first / (rows * step_s);
   line.frequency_deviation_hz =
       std::sqrt(24.0 * peak.level) / (line.amplitude * valid * valid * kTurn_rad * step_s);

@@ -175,7 +175,11 @@ ArrayXd power(const ArrayXd& x, std::size_t exponent) {
 void add_polynomial(std::vector<BaselineColumn>& columns, const Simulation& s, Output output,
                     const Polynomial& polynomial, const char* name) {
   if (!s.telemetry->has(output)) return;
-  const std::size_t terms = span(s.smooth_case_degc) < kLeastSwing_degc ? 2 : polynomial.coefficients.size();
+  // Over a case that stands still only start temperature times slope shows in the frequency, and the slope is
+  // the better known of the two; the drive and the quadrature then show theirs.
+  const std::size_t few = output == Output::frequency ? 1 : 2;
+  const std::size_t terms =
+      span(s.smooth_case_degc) < kLeastSwing_degc ? few : polynomial.coefficients.size();
   for (std::size_t i = 0; i < std::min(terms, polynomial.coefficients.size()); ++i) {
     ArrayXd column = power(s.smooth_degc - polynomial.reference, i);
     if (output != Output::frequency) column *= s.telemetry->amplitude.array();

@@ -23,12 +23,14 @@ using Members = std::vector<Member>;
 // In units of the score, twice a log likelihood.
 constexpr double kStructure = 50.0;  // a free function of an input
 constexpr double kStructureInTime = 150.0;
+constexpr double kBesideColour = 0.0;  // the same where a walk or 1/f noise would be named
 constexpr double kWander = 4.5;  // squares of an output that nobody explains, over those expected
 // Colour of the rate that the model does not state. A likelihood of variances scatters by the noise's
 // kurtosis: heavy tails of kurtosis 6 make 2.5 of what Gaussian noise does.
 constexpr double kColour = 60.0;
 // Of an effect's trace: no equation of ours is better, and what it leaves behind is no noise.
 constexpr double kEquations = 0.01;
+constexpr Index kFineNodes = 32;
 constexpr double kRecalibrate_p = 1e-6;
 constexpr double kRecalibrateTogether_p = 1e-12;
 constexpr double kMovedAlone = 4.5;
@@ -179,6 +181,13 @@ Remainder along_no_input(Output output, double evidence) {
   return remainder;
 }
 
+const Remainder* best_of(const std::vector<Remainder>& list, Output output) {
+  const Remainder* best = nullptr;
+  for (const auto& each : list)
+    if (each.output == output && (!best || each.evidence > best->evidence)) best = &each;
+  return best;
+}
+
 // Squares of the innovations that no noise makes: of the rows that stand kJump deviations off, if there are
 // several. What comes and goes looks like a walk to the fit of the noise; its steps do not.
 double jumps(const TelemetryDiagnosis& result, Output output) {
@@ -208,24 +217,39 @@ double size_of(const TelemetryDiagnosis& result, Output output) {
 }
 
 void Diagnosis::look_at_remainder(TelemetryDiagnosis& result) {
-  result.remainders = remainders(*result.hypotheses, result.members, kStructure);
-  for (auto& remainder : result.remainders) remainder.share = remaining_share(result, remainder.output);
+  const auto functions = remainders(*result.hypotheses, result.members, kBesideColour);
+  for (const Output output : kOutputs) {
+    const Remainder* best = best_of(functions, output);
+    if (best && best->evidence > kStructure) result.remainders.push_back(*best);
+  }
   std::vector<std::size_t> all(result.members.size());
   std::iota(all.begin(), all.end(), 0U);
   const Reduced forms = form_directions(*result.hypotheses, result.members, result.final, all);
   const Colour colour = colour_of(*result.hypotheses, result.members, forms, Output::rate);
   if (colour.evidence > kColour && !colour.is_line() &&
-      drift_of(colour, result.hypotheses->simulation()) > kEquations * size_of(result, Output::rate))
-    result.colours.push_back(colour);
+      drift_of(colour, result.hypotheses->simulation()) > kEquations * size_of(result, Output::rate)) {
+    // A walk takes what a function of an input would: that function must not be worth its price, unless time is
+    // the better input, which is what a walk looks like.
+    const Remainder* function = best_of(functions, Output::rate);
+    if (!function || function->variable == "time_s")
+      result.colours.push_back(colour);
+    else if (function->evidence <= kStructure)
+      result.remainders.push_back(*function);
+  }
   if (colour.evidence > kColour && colour.is_line())
     result.remainders.push_back(along_no_input(Output::rate, colour.evidence));
+  for (auto& remainder : result.remainders) remainder.share = remaining_share(result, remainder.output);
   for (const Output output : {Output::frequency, Output::drive, Output::quadrature}) {
     const Index rows = space_.rows(output);
     if (rows < 64) continue;
     const std::size_t c = place(output);
     const double expected =
         coloured_noise(result.hypotheses->expected()[c], space_.block_count()).total_variance();
-    const double ratio = result.final.residual[c].squaredNorm() / (static_cast<double>(rows) * expected);
+    // What the model's own numbers could still take is no wander: whitened, a constant weighs next to nothing.
+    const MatrixXd own = orthonormal(result.hypotheses->design(result.members)[c]);
+    const VectorXd residual = result.final.residual[c];
+    const VectorXd wander = residual - own * (own.transpose() * residual);
+    const double ratio = wander.squaredNorm() / (static_cast<double>(rows) * expected);
     const double evidence =
         ratio > kWander ? static_cast<double>(rows) * (ratio - 1.0) : jumps(result, output);
     if (evidence == 0.0) continue;
@@ -298,10 +322,11 @@ bool recalibrated(const TelemetryDiagnosis& result) {
 void Diagnosis::decide(TelemetryDiagnosis& result) {
   const auto structured = [&](Output output) {
     return std::ranges::any_of(result.remainders, [&](const Remainder& r) {
-      // A function of time alone is what coloured noise looks like as well.
-      const double least = r.variable == "time_s" ? kStructureInTime : kStructure;
-      return r.output == output && (r.evidence > least || r.variable.empty()) &&
-             (result.members.empty() || r.share > kRemaining);
+      // A function of time alone is what coloured noise looks like as well; with that many nodes it is not: a
+      // walk's few slowest ones hold most of it.
+      const bool enough =
+          r.variable != "time_s" || r.evidence > kStructureInTime || r.at.size() >= kFineNodes;
+      return r.output == output && enough && (result.members.empty() || r.share > kRemaining);
     });
   };
   // A name that leaves most of the misfit where it was is no explanation.

@@ -23,18 +23,19 @@ constexpr double kMemories_s[] = {300.0, 900.0, 2700.0};
 struct Variable {
   std::string name;
   ArrayXd values;
+  Index most_nodes = 64;
 };
 
 std::vector<Variable> variables_of(const Simulation& s) {
   const Telemetry& t = *s.telemetry;
   std::vector<Variable> list;
-  const auto add = [&](const char* name, const ArrayXd& values) {
-    if (span(values) > 1e-9 * (1.0 + values.abs().maxCoeff())) list.push_back({name, values});
+  const auto add = [&](const char* name, const ArrayXd& values, Index most_nodes = 64) {
+    if (span(values) > 1e-9 * (1.0 + values.abs().maxCoeff())) list.push_back({name, values, most_nodes});
   };
   add("time_s", s.time_s);
   // A thermometer that shows nothing but its noise orders the noise that it makes itself.
   if (span(s.smooth_case_degc) > kLeastSwing_degc) {
-    add("resonator_temp_degc", s.smooth_degc);
+    add("resonator_temp_degc", s.smooth_degc, 128);  // fringes of light in a gap stand close
     add("resonator_temp_slope_degc_s", slope_in_time(s.smooth_degc, t.step_s));
     add("case_temp_degc", s.smooth_case_degc);
   }
@@ -139,9 +140,39 @@ Alone with_own_noise(const MatrixXd& x, const VectorXd& y, const std::vector<cal
   return result;
 }
 
-}  // namespace
+// What free functions of one output are tried beside.
+struct Beside {
+  const RowSpace& space;
+  const MatrixXd& own;
+  const VectorXd& y;
+  const std::vector<calibration::RowRange>& segments;
+  double price;
+  double minus_two_log;  // without any
+};
 
-namespace {
+void try_along(const Variable& variable, Index nodes, const Beside& beside, Remainder& best) {
+  const Reduced free = hats(beside.space, variable.values, nodes, best.output);
+  const MatrixXd& columns = free[place(best.output)];
+  std::vector<Index> used;
+  for (Index j = 0; j < nodes; ++j)
+    if (columns.col(j).squaredNorm() > 0.0) used.push_back(j);
+  const auto count = static_cast<Index>(used.size());
+  MatrixXd x(beside.own.rows(), beside.own.cols() + count);
+  x << beside.own, columns(Eigen::all, used);
+  const Alone with = with_own_noise(x, beside.y, beside.segments, beside.price);
+  const double evidence = beside.minus_two_log - with.minus_two_log - beside.price * static_cast<double>(count);
+  if (evidence <= best.evidence) return;
+  best.evidence = evidence;
+  best.variable = variable.name;
+  best.value = with.coefficients.tail(count);
+  best.half_width = with.half_width.tail(count);
+  best.fitted = x.rightCols(count) * best.value;
+  best.at.resize(count);
+  for (Index j = 0; j < count; ++j)
+    best.at[j] = variable.values.minCoeff() + span(variable.values) *
+                                                  static_cast<double>(used[static_cast<std::size_t>(j)]) /
+                                                  static_cast<double>(nodes - 1);
+}
 
 std::vector<calibration::RowRange> segments_of(const std::vector<Index>& blocks) {
   std::vector<calibration::RowRange> segments;
@@ -171,36 +202,17 @@ std::vector<Remainder> remainders(Hypotheses& hypotheses, const std::vector<Memb
     const double price = std::log(static_cast<double>(y.size()));
     const auto segments = segments_of(space.blocks(output));
     const Alone without = with_own_noise(own, y, segments, price);
-    Remainder best;
-    best.output = output;
-    best.evidence = threshold;
-    bool found = false;
+    Remainder in_time, of_input;
+    for (Remainder* each : {&in_time, &of_input}) {
+      each->output = output;
+      each->evidence = threshold;
+    }
     for (const auto& variable : variables)
-      for (const Index nodes : {8, 16, 32, 64}) {
-        const Reduced free = hats(space, variable.values, nodes, output);
-        std::vector<Index> used;
-        for (Index j = 0; j < nodes; ++j)
-          if (free[c].col(j).squaredNorm() > 0.0) used.push_back(j);
-        MatrixXd x(own.rows(), own.cols() + static_cast<Index>(used.size()));
-        x << own, free[c](Eigen::all, used);
-        const Alone with = with_own_noise(x, y, segments, price);
-        const double evidence =
-            without.minus_two_log - with.minus_two_log - price * static_cast<double>(used.size());
-        if (evidence <= best.evidence) continue;
-        found = true;
-        best.evidence = evidence;
-        best.variable = variable.name;
-        const auto count = static_cast<Index>(used.size());
-        best.value = with.coefficients.tail(count);
-        best.half_width = with.half_width.tail(count);
-        best.fitted = x.rightCols(count) * best.value;
-        best.at.resize(count);
-        for (Index j = 0; j < count; ++j)
-          best.at[j] = variable.values.minCoeff() +
-                       span(variable.values) * static_cast<double>(used[static_cast<std::size_t>(j)]) /
-                           static_cast<double>(nodes - 1);
-      }
-    if (found) list.push_back(std::move(best));
+      for (Index nodes = 8; nodes <= variable.most_nodes; nodes *= 2)
+        try_along(variable, nodes, {space, own, y, segments, price, without.minus_two_log},
+                  variable.name == "time_s" ? in_time : of_input);
+    for (Remainder* each : {&of_input, &in_time})
+      if (!each->variable.empty()) list.push_back(std::move(*each));
   }
   return list;
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "tests/golden/diagnosis/telemetry_writer.hpp"
 
@@ -67,6 +68,24 @@ TEST_F(Lines, FollowsTheResonatorHoweverItWasSampled) {
     EXPECT_NEAR(line->amplitude, kAmplitude_dph, kDeviations * line->amplitude_deviation) << within;
     EXPECT_LT(line->low_hz, line->high_hz);
   }
+}
+
+// The phase that is summed up from recorded frequencies carries their noise: over a recording it wanders.
+TEST_F(Lines, AWanderingPhaseTakesNothingOffTheAmplitude) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> step(0.0, 2.5 / std::sqrt(static_cast<double>(noise_.size())));
+  Eigen::VectorXd residual = noise_;
+  double turns = 0.0, wander_rad = 0.0;
+  for (Index i = 0; i < residual.size(); ++i) {
+    residual[i] += kAmplitude_dph * std::sin(2.0 * std::numbers::pi * std::fmod(turns, 1.0) + wander_rad);
+    turns += telemetry_[Output::frequency][i] * telemetry_.step_s;
+    wander_rad += step(random);
+  }
+  const auto line = in(residual);
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->harmonic, 1);
+  EXPECT_NEAR(line->amplitude, kAmplitude_dph, 3.0 * line->amplitude_deviation);
+  EXPECT_LT(line->amplitude_deviation, 0.1 * kAmplitude_dph);
 }
 
 }  // namespace

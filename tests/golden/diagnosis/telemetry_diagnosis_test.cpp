@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/golden/diagnosis/telemetry_writer.hpp"
 
 namespace hemi::diagnosis {
@@ -52,9 +55,12 @@ TEST(TelemetryDiagnosis, NamesGasLeak) {
 }
 
 TEST(TelemetryDiagnosis, NamesHysteresis) {
-  const auto result = diagnosed({.seed = 51, .hysteresis_dph = 0.5});
-  ASSERT_EQ(result.named.size(), 1U);
-  EXPECT_EQ(result.named[0].effect, "thermal_hysteresis");
+  // h' = (T' - |T'| h) / 6 degC between -r and r: the settled ways are farthest apart in the middle,
+  // 2 (1 - 1 / cosh(r / 6 degC)).
+  const Telemetry telemetry = tests::telemetry({.seed = 51, .hysteresis_dph = 0.5});
+  const double half_range_degc = 0.5 * span(simulate(telemetry, tests::nominal()).smooth_degc);
+  expect_named(diagnose_telemetry(telemetry, tests::nominal()), "thermal_hysteresis",
+               0.5 * 2.0 * (1.0 - 1.0 / std::cosh(half_range_degc / 6.0)));
 }
 
 NominalModel with_names(const TelemetryDiagnosis& result) {
@@ -103,6 +109,25 @@ TEST(TelemetryDiagnosis, ASlowWaveIsNoRandomWalk) {
   const auto result = diagnosed({.seed = 81, .wave_dph = 0.3});
   EXPECT_EQ(result.verdict, Verdict::unknown);
   EXPECT_TRUE(result.named.empty());
+}
+
+// A walk would take it as well; the temperature does it better.
+TEST(TelemetryDiagnosis, AWeakRippleOverTemperatureIsNoRandomWalk) {
+  for (const double ripple_dph : {0.1, 0.12}) {
+    const auto result = diagnosed({.seed = 91, .ripple_dph = ripple_dph});
+    EXPECT_EQ(result.verdict, Verdict::unknown) << ripple_dph;
+    EXPECT_TRUE(result.named.empty()) << ripple_dph;
+  }
+}
+
+// Start temperature and slope of the frequency show as their product alone: free, both ran off.
+TEST(TelemetryDiagnosis, AResonatorThatHasNotSettledAtOneTemperatureIsConsistent) {
+  for (const std::uint64_t seed : {111U, 112U}) {
+    const auto result = diagnosed({.seed = seed, .swing = 0.0, .start_degc = -0.6});
+    EXPECT_EQ(result.verdict, Verdict::consistent) << seed << moved(result);
+    EXPECT_TRUE(std::ranges::none_of(
+        result.parameters, [](const Moved& each) { return each.name == "frequency.coefficients_hz[1]"; }));
+  }
 }
 
 TEST(TelemetryDiagnosis, WhatIsInNoCatalogueIsUnknownAndWhereItLivesIsSaid) {

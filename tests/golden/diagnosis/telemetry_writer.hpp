@@ -23,6 +23,8 @@ struct Recipe {
   double tau_scale = 1.0;       ///< of the model's time constant
   double wave_dph = 0.0;        ///< of the rate, one period each 6000 s: in no catalogue
   double warmth_degc = 0.0;     ///< final rise of the resonator while powered, time constant 1200 s
+  double swing = 1.0;           ///< of the case; 0: stands still
+  double start_degc = 0.0;      ///< of the resonator, above the case
   Eigen::Index cut_rows = 0;    ///< power is off for these rows, from the 8000th
 };
 
@@ -44,9 +46,9 @@ inline Telemetry telemetry(const Recipe& recipe) {
   const NominalModel m = nominal();
   std::mt19937_64 random(recipe.seed);
   std::normal_distribution<double> normal;
-  const auto at_case = [](double t) {
-    return 15.0 + 25.0 * std::sin(2.0 * std::numbers::pi * t / 9000.0) +
-           8.0 * std::sin(2.0 * std::numbers::pi * t / 5200.0);
+  const auto at_case = [&](double t) {
+    return 15.0 + recipe.swing * (25.0 * std::sin(2.0 * std::numbers::pi * t / 9000.0) +
+                                  8.0 * std::sin(2.0 * std::numbers::pi * t / 5200.0));
   };
   const auto polynomial = [](const Polynomial& p, double x) {
     double sum = 0.0;
@@ -63,7 +65,7 @@ inline Telemetry telemetry(const Recipe& recipe) {
   for (auto& output : t.outputs) output = Eigen::VectorXd::Zero(kRows);
   t.powered = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(kRows, true);
   const double tau = m.time_constant_s * recipe.tau_scale;
-  double degc = at_case(0.0), before = degc, loop = 0.0, heat = 0.0, behind_case = degc;
+  double degc = at_case(0.0) + recipe.start_degc, before = degc, loop = 0.0, heat = 0.0, behind_case = degc;
   const auto powered = [&](Eigen::Index i) { return i < 8000 || i >= 8000 + recipe.cut_rows; };
   double frequency_before = polynomial(m.frequency_hz, degc);
   for (Eigen::Index i = 0; i < kRows; ++i) {
