@@ -110,7 +110,9 @@ Series oscillator_shape(const Setting& in, std::string& name) {
 Form oscillator_temperature(const Setting& in) {
   std::string name;
   const Series y = oscillator_shape(in, name);
-  return scaled_frequency(name, -1e-6 * y, 30.0, in.random.sign(), "ppm_span", Stage::kClock);
+  Form form = scaled_frequency(name, -1e-6 * y, 30.0, in.random.sign(), "ppm_span", Stage::kClock);
+  form.parameters = [](double ppm) { return Values{{"ppm_span", std::abs(ppm)}}; };  // peak to peak
+  return form;
 }
 
 Form oscillator_ageing(const Setting& in) {
