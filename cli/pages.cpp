@@ -176,9 +176,11 @@ void judge_run(const recording::Json& summary, report::Report& document) {
   }
   const double locked = 100.0 * number("locked_share");
   document.tone = locked > 99.0 ? report::Tone::kGood : report::Tone::kNeutral;
+  const double drift_ppm = number("drift_ppm");
   document.verdict =
-      fmt::format("Locked for {:.1f} % of the window at {:.6f} Hz, with a drift of {:+.2f} ppm.", locked,
-                  number("frequency_hz"), number("drift_ppm"));
+      fmt::format("Locked for {:.1f} % of the window at {:.6f} Hz, {}.", locked, number("frequency_hz"),
+                  std::abs(drift_ppm) < 0.01 ? "drifting by less than 0.01 ppm"
+                                             : fmt::format("with a drift of {:+.2f} ppm", drift_ppm));
   document.facts = {{"Outputs used", fmt::format("{}", summary["outputs"].get<std::size_t>())},
                     {"Frequency at the start", fmt::format("{:.6f} Hz", number("start_hz"))},
                     {"Frequency at the end", fmt::format("{:.6f} Hz", number("end_hz"))}};

@@ -65,7 +65,7 @@ constexpr std::array<Arrow, 2> kLastArrows = {{{"thermometer", "bias_model"}, {"
 struct Alias {
   std::string_view name, id;
 };
-constexpr std::array<Alias, 43> kAliases = {{{"pickoff", "adc"},
+constexpr std::array<Alias, 45> kAliases = {{{"pickoff", "adc"},
                                              {"pickoffs", "adc"},
                                              {"converter", "adc"},
                                              {"converters", "adc"},
@@ -73,6 +73,8 @@ constexpr std::array<Alias, 43> kAliases = {{{"pickoff", "adc"},
                                              {"adc_x", "adc"},
                                              {"adc_y", "adc"},
                                              {"shell", "resonator"},
+                                             {"sensor", "resonator"},
+                                             {"chamber", "thermal"},
                                              {"frequency", "resonator"},
                                              {"damping", "resonator"},
                                              {"frequency_hz", "frequency_tracker"},
@@ -202,13 +204,35 @@ std::optional<std::string> stage_of(std::string_view name) {
   return std::string(alias->id);
 }
 
+namespace {
+
+/// Blocks of "resonator, oscillator or chamber".
+std::vector<std::string> stages_of(std::string_view names) {
+  constexpr std::string_view kBetween[] = {", ", " or "};
+  std::vector<std::string> stages;
+  while (!names.empty()) {
+    std::size_t end = names.size(), next = names.size();
+    for (const auto between : kBetween) {
+      const std::size_t at = names.find(between);
+      if (at >= end) continue;
+      end = at;
+      next = at + between.size();
+    }
+    if (const auto stage = stage_of(names.substr(0, end))) stages.push_back(*stage);
+    names.remove_prefix(next);
+  }
+  return stages;
+}
+
+}  // namespace
+
 std::string chain_svg(const Chain& chain) {
   std::vector<std::string> marked;
   std::string label = "The signal chain from the resonator to the bias model";
   for (const auto& mark : chain.marks) {
-    const auto stage = stage_of(mark.stage);
-    if (!stage) continue;
-    marked.push_back(*stage);
+    const auto stages = stages_of(mark.stage);
+    if (stages.empty()) continue;
+    marked.insert(marked.end(), stages.begin(), stages.end());
     label += fmt::format("; marked: {}", mark.stage);
   }
   return drawing(kWide, marked, label) + drawing(kNarrow, marked, label);

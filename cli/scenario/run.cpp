@@ -84,7 +84,6 @@ recording::Recording to_recording(const Simulated& simulated, const Scenario& sc
   add(out, "temperature_degc", simulated.temperature_degc);
   add(out, "compensated_rate_dph", simulated.compensated_rate_dph);
   add(out, "status", simulated.status);
-  if (!simulated.compensated_rate_dph.empty()) out.sidecar["compensated"] = true;
   if (!scenario.started.empty()) out.sidecar["started"] = scenario.started;
   out.sidecar["notes"] = "simulated by hemi";
   out.sidecar["simulation"] = provenance(scenario);

@@ -173,6 +173,11 @@ TEST(Chain, KnowsEveryBlockOfTheCore) {
   }
   EXPECT_EQ(stage_of("Phase detector"), "phase_detector");
   EXPECT_EQ(stage_of("teapot"), std::nullopt);
+  // Where a verdict leaves several open, all are marked, in the wide and in the narrow drawing.
+  const std::string open = chain_svg({.marks = {{"resonator, oscillator or chamber", ""}}, .note = {}});
+  std::size_t marked = 0;
+  for (std::size_t at = open.find(" marked\""); at != std::string::npos; at = open.find(" marked\"", at + 1)) ++marked;
+  EXPECT_EQ(marked, 6U);
   EXPECT_EQ(chain_svg({.marks = {{"teapot", ""}}, .note = {}}).find(" marked"), std::string::npos);
 }
 

@@ -71,6 +71,8 @@ def write_case():
             out.write(f"{i},{degc:.4f},{rate:.3f}\n")
 
 
+shutil.copy(table, work / "paper_table1.csv")
+table = "paper_table1.csv"
 write_tone()
 write_bench()
 write_case()
@@ -86,6 +88,11 @@ for name, recording in (("diagnosis-table", table), ("diagnosis-capture", "tone.
                         ("diagnosis-case", "case.csv")):
     run("diagnose", recording, "-o", "out")
     take("out/report.html", name)
+run("simulate", "hysteresis", "-o", "chamber")
+run("diagnose", "chamber/hysteresis.csv", "--model", "chamber/hysteresis.model.json", "-o", "out")
+take("out/report.html", "diagnosis")
+run("report", "chamber/hysteresis.csv", "-o", "recording.html")
+take("recording.html", "recording")
 run("prove", "--cases", "2", "--class", "null", "-j", "1", "-o", "proof")
 take("proof/prove.html", "prove")
 shutil.rmtree(work)
