@@ -23,6 +23,8 @@ constexpr std::size_t kMostMembers = 4;
 constexpr std::size_t kSingleProposals = 6;
 constexpr std::size_t kPairProposals = 3;
 constexpr int kRefinements = 5;
+constexpr int kMostSwaps = 3;
+constexpr double kEdge = 2.0;     // deviations beyond what is possible
 constexpr double kShared = 1e-9;  // ridge: columns of one effect may all but coincide
 
 // Takes off what `set` explains. A column that keeps less than 1e-9 of itself is part of the set.
@@ -74,7 +76,17 @@ ScoredSet EffectSearch::scored(Members members) {
     if (!family.possible) continue;
     const Index count = hypotheses_.columns(members[i])[0].cols();
     const VectorXd c = fit.coefficients.segment(fit.first[i], count);
-    if (!family.possible(hypotheses_.simulation(), {c.begin(), c.end()}, members[i].shape))
+    const VectorXd deviations =
+        fit.covariance.diagonal().segment(fit.first[i], count).cwiseMax(0.0).cwiseSqrt();
+    const auto possible = [&](const VectorXd& at) {
+      return family.possible(hypotheses_.simulation(), {at.begin(), at.end()}, members[i].shape);
+    };
+    // Where two numbers stand in for each other, refinement ends at the edge, and noise estimated anew moves
+    // beyond it.
+    bool near = possible(c);
+    for (Index k = 0; k < count && !near; ++k)
+      for (const double off : {-kEdge, kEdge}) near |= possible(c + off * deviations[k] * VectorXd::Unit(count, k));
+    if (!near)
       score = std::numeric_limits<double>::infinity();
   }
   return {std::move(members), score};
@@ -281,6 +293,22 @@ std::vector<Rival> EffectSearch::rivals_of(const ScoredSet& best, std::size_t pl
   return rivals;
 }
 
+// Effects that came one after another may have taken each other's place.
+std::optional<ScoredSet> EffectSearch::swapped_for_the_better(const ScoredSet& best,
+                                                              const std::vector<std::vector<Rival>>& rivals) {
+  const Rival* least = nullptr;
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    if (rivals[i].empty() || rivals[i].front().gap >= (least ? least->gap : 0.0)) continue;
+    least = &rivals[i].front();
+    place = i;
+  }
+  if (!least) return std::nullopt;
+  Members members = best.members;
+  members[place] = least->member;
+  return scored(std::move(members));
+}
+
 SearchResult EffectSearch::run() {
   SearchResult result;
   ScoredSet best = scored({});
@@ -294,8 +322,14 @@ SearchResult EffectSearch::run() {
     if (next.score >= best.score) break;
     best = std::move(next);
   }
-  best = worthy(std::move(best), result.without);
-  for (std::size_t i = 0; i < best.members.size(); ++i) result.rivals.push_back(rivals_of(best, i));
+  for (int swap = 0;; ++swap) {
+    best = worthy(std::move(best), result.without);
+    result.rivals.clear();
+    for (std::size_t i = 0; i < best.members.size(); ++i) result.rivals.push_back(rivals_of(best, i));
+    const auto better = swapped_for_the_better(best, result.rivals);
+    if (!better || swap == kMostSwaps) break;
+    best = *better;
+  }
   result.best = std::move(best);
   return result;
 }

@@ -23,14 +23,32 @@ ArrayXd command(const Simulation& s, Output output) {
   return s.nominal[output];
 }
 
-// Deviation of a polynomial: a bump exp(-((T - Tc) / w)^2 / 2) or a power of scaled T.
-ArrayXd bump(const Simulation& s, const Shape& shape) {
-  const double low = s.smooth_degc.minCoeff();
+// How a command may leave its polynomial in T: local ones have a centre and a width, as shares of T's range.
+enum class Course { bump, step, square, cube };
+
+ArrayXd course_of(const Simulation& s, Course course, const Shape& shape) {
+  if (course == Course::square || course == Course::cube)
+    return ((s.smooth_degc - 20.0) / 30.0).pow(course == Course::square ? 2 : 3);
   const double range = span(s.smooth_degc);
-  return (-0.5 * ((s.smooth_degc - low - shape[0] * range) / (shape[1] * range)).square()).exp();
+  const ArrayXd x = (s.smooth_degc - s.smooth_degc.minCoeff() - shape[0] * range) / (shape[1] * range);
+  if (course == Course::bump) return (-0.5 * x.square()).exp();
+  return x.tanh();
 }
 
-std::vector<Shape> bump_grid() {
+const char* text_of(Course course) {
+  switch (course) {
+    case Course::bump:
+      return " += A p exp(-((T - Tc) / w)^2 / 2)";
+    case Course::step:
+      return " += A p tanh((T - Tc) / w)";
+    case Course::square:
+      return " += A p (T - T0)^2";
+    default:
+      return " += A p (T - T0)^3";
+  }
+}
+
+std::vector<Shape> local_grid() {
   std::vector<Shape> grid;
   for (const double width : {0.07, 0.13, 0.25})
     for (double centre = 0.001; centre < 1.01; centre += width == 0.07 ? 0.09 : 0.125)
@@ -48,21 +66,16 @@ ArrayXd beyond_polynomial(const Simulation& s, const ArrayXd& deviation, std::si
   return rest - powers * powers.colPivHouseholderQr().solve(rest);
 }
 
-EffectFamily deviation(const char* effect, Output output, int exponent) {
+EffectFamily deviation(const char* effect, Output output, Course course) {
   EffectFamily family;
   family.effect = effect;
   const bool drive = output == Output::drive;
-  const std::string channel = drive ? "drive" : "quadrature";
-  family.form = channel + (exponent == 0 ? " += A p exp(-((T - Tc) / w)^2 / 2)"
-                                         : " += A p (T - T0)^" + std::to_string(exponent));
-  if (exponent == 0) {
-    family.grid = bump_grid();
+  family.form = std::string(drive ? "drive" : "quadrature") + text_of(course);
+  if (course == Course::bump || course == Course::step) {
+    family.grid = local_grid();
     family.spacing = {1.15, 1.35};
   }
-  const auto shift = [exponent](const Simulation& s, const Shape& shape) -> ArrayXd {
-    if (exponent == 0) return bump(s, shape);
-    return ((s.smooth_degc - 20.0) / 30.0).pow(exponent);
-  };
+  const auto shift = [course](const Simulation& s, const Shape& shape) { return course_of(s, course, shape); };
   family.columns = [shift, output](const Simulation& s, const Shape& shape) {
     return std::vector<Trace>{in(output, s.telemetry->amplitude.array() * shift(s, shape))};
   };
@@ -146,8 +159,8 @@ EffectFamily pickoff_gain(bool rate, bool quadrature) {
 void add_drive(std::vector<EffectFamily>& families, const Telemetry& t) {
   families.push_back(gas_leak());
   if (moves(t.case_degc, 1.0)) {
-    for (const int exponent : {0, 2, 3})
-      families.push_back(deviation("damping_temperature", Output::drive, exponent));
+    for (const Course course : {Course::bump, Course::square, Course::cube})
+      families.push_back(deviation("damping_temperature", Output::drive, course));
   }
   if (moves(t.amplitude, 1e-3))
     for (const int exponent : {1, 2}) families.push_back(damping_nonlinearity(exponent));
@@ -168,8 +181,8 @@ std::vector<EffectFamily> command_families(const Simulation& s) {
   if (!t.has(Output::quadrature)) return families;
   families.push_back(split_in_time());
   if (moves(t.case_degc, 1.0))
-    for (const int exponent : {0, 2, 3})
-      families.push_back(deviation("frequency_split", Output::quadrature, exponent));
+    for (const Course course : {Course::bump, Course::step, Course::square, Course::cube})
+      families.push_back(deviation("frequency_split", Output::quadrature, course));
   return families;
 }
 

@@ -12,7 +12,7 @@ using Shape = std::vector<double>;
 constexpr double kThermalLagRatio = 1.35;
 constexpr double kRadiusRatio = 1.5;
 constexpr double kLongestSeries_s = 600.0;
-constexpr double kFastPart = 0.15;
+constexpr double kFastPart = 0.2;
 
 ArrayXd case_behind(const Simulation& s, double tau_s) {
   const ArrayXd& degc = s.smooth_case_degc;
@@ -178,7 +178,7 @@ EffectFamily self_heating(const Simulation& s, bool restarts, int bodies) {
   EffectFamily family;
   family.effect = "self_heating";
   family.form = bodies == 1 ? "T += rise (1 - exp(-t / t0))"
-                            : "T += r1 (1 - exp(-t / t0)) + r2 (1 - exp(-t / (0.15 t0)))";
+                            : "T += r1 (1 - exp(-t / t0)) + r2 (1 - exp(-t / (0.2 t0)))";
   if (restarts) family.form += ", again after every power cut";
   family.grid = geometric_grid(60.0, 2.0 * s.time_s[s.time_s.size() - 1], kThermalLagRatio);
   family.spacing = {kThermalLagRatio};

@@ -166,6 +166,9 @@ TEST_F(Simulate, WholeInstrument) {
   const auto recording = recording::read_recording(path("out/rate_step_full.csv"));
   EXPECT_EQ(recording.rows(), 999U);
   EXPECT_TRUE(recording.gaps.empty());
+  // rate_dph is the rate before compensation, which the core's own stands beside: it may be calibrated.
+  EXPECT_NE(recording.find("compensated_rate_dph"), nullptr);
+  EXPECT_FALSE(recording.sidecar.contains("compensated"));
   EXPECT_EQ(recording::read_raw_capture(path("out/rate_step_full.raw.csv")).adc_x.size(), 10000U);
   // 0.4 s after a step of a loop of 40 Hz with its zero at 4 Hz, e^-10 is left of 360 000 deg/h: 16 deg/h.
   // Pickoff noise is 0.32 deg/h/rtHz at 1 Hz and rises with frequency to the loop's K / 2 pi = 36 Hz; from
