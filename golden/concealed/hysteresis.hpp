@@ -5,9 +5,9 @@
 
 namespace hemi::concealed {
 
-/// Rate-independent memory of x, scaled to a peak-to-peak value of 1 over the recording `first`, whose range x is
-/// scaled to as well; 0 where that never moves. `opening`: largest difference between the ways up and down over
-/// the full range, at the same scale; the peak-to-peak value holds a function of x alone besides.
+/// Rate-independent memory of x, scaled to a peak-to-peak value of 1 over the recording `first`, whose range
+/// x is scaled to as well; 0 where that never moves. `opening`: largest difference between the ways up and
+/// down over the full range, at the same scale; the peak-to-peak value holds a function of x alone besides.
 struct Memory {
   Series along;
   double opening = 0.0;

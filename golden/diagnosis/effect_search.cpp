@@ -85,9 +85,9 @@ ScoredSet EffectSearch::scored(Members members) {
     // beyond it.
     bool near = possible(c);
     for (Index k = 0; k < count && !near; ++k)
-      for (const double off : {-kEdge, kEdge}) near |= possible(c + off * deviations[k] * VectorXd::Unit(count, k));
-    if (!near)
-      score = std::numeric_limits<double>::infinity();
+      for (const double off : {-kEdge, kEdge})
+        near |= possible(c + off * deviations[k] * VectorXd::Unit(count, k));
+    if (!near) score = std::numeric_limits<double>::infinity();
   }
   return {std::move(members), score};
 }

@@ -75,7 +75,9 @@ EffectFamily deviation(const char* effect, Output output, Course course) {
     family.grid = local_grid();
     family.spacing = {1.15, 1.35};
   }
-  const auto shift = [course](const Simulation& s, const Shape& shape) { return course_of(s, course, shape); };
+  const auto shift = [course](const Simulation& s, const Shape& shape) {
+    return course_of(s, course, shape);
+  };
   family.columns = [shift, output](const Simulation& s, const Shape& shape) {
     return std::vector<Trace>{in(output, s.telemetry->amplitude.array() * shift(s, shape))};
   };

@@ -103,7 +103,8 @@ ArrayXd full_loop(const Simulation& s) {
   return way;
 }
 
-// Loop height: largest difference between the ways up and down over the full range. A function of T alone has none.
+// Loop height: largest difference between the ways up and down over the full range. A function of T alone has
+// none.
 double opening(const ArrayXd& along_full_loop) {
   const ArrayXd up = along_full_loop.segment(kLoopRows, kLoopRows);
   return (up - along_full_loop.tail(kLoopRows).reverse()).abs().maxCoeff();

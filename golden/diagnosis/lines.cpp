@@ -82,12 +82,13 @@ struct Amplitude {
   double value, deviation;
 };
 
-// Window by window, each with a phase of its own: a carrier's phase is summed up from recorded frequencies, whose
-// noise makes it wander, and one phase for all rows took up to a tenth off the amplitude. `ratio`: power of the line
-// over the noise's, whose `level` is that of a bin of `valid` rows. With E|a_k|^2 = A^2 + s^2 of a window,
-// A^2 = mean |a_k|^2 - s^2, var A^2 = (2 A^2 s^2 + s^4) / windows, or by the windows' own scatter if that is more: a
-// line need not be steady.
-Amplitude by_windows(const Eigen::MatrixX2d& wave, const VectorXd& e, double ratio, double level, double valid) {
+// Window by window, each with a phase of its own: a carrier's phase is summed up from recorded frequencies,
+// whose noise makes it wander, and one phase for all rows took up to a tenth off the amplitude. `ratio`:
+// power of the line over the noise's, whose `level` is that of a bin of `valid` rows. With E|a_k|^2 = A^2 +
+// s^2 of a window, A^2 = mean |a_k|^2 - s^2, var A^2 = (2 A^2 s^2 + s^4) / windows, or by the windows' own
+// scatter if that is more: a line need not be steady.
+Amplitude by_windows(const Eigen::MatrixX2d& wave, const VectorXd& e, double ratio, double level,
+                     double valid) {
   const Index windows = std::clamp<Index>(static_cast<Index>(ratio / kLeastWindowRatio), 1, kMostWindows);
   const Index rows = e.size() / windows;
   ArrayXd squares(windows);

@@ -24,7 +24,7 @@ using Members = std::vector<Member>;
 constexpr double kStructure = 50.0;  // a free function of an input
 constexpr double kStructureInTime = 150.0;
 constexpr double kBesideColour = 0.0;  // the same where a walk or 1/f noise would be named
-constexpr double kWander = 4.5;  // squares of an output that nobody explains, over those expected
+constexpr double kWander = 4.5;        // squares of an output that nobody explains, over those expected
 // Colour of the rate that the model does not state. A likelihood of variances scatters by the noise's
 // kurtosis: heavy tails of kurtosis 6 make 2.5 of what Gaussian noise does.
 constexpr double kColour = 60.0;
@@ -228,8 +228,8 @@ void Diagnosis::look_at_remainder(TelemetryDiagnosis& result) {
   const Colour colour = colour_of(*result.hypotheses, result.members, forms, Output::rate);
   if (colour.evidence > kColour && !colour.is_line() &&
       drift_of(colour, result.hypotheses->simulation()) > kEquations * size_of(result, Output::rate)) {
-    // A walk takes what a function of an input would: that function must not be worth its price, unless time is
-    // the better input, which is what a walk looks like.
+    // A walk takes what a function of an input would: that function must not be worth its price, unless time
+    // is the better input, which is what a walk looks like.
     const Remainder* function = best_of(functions, Output::rate);
     if (!function || function->variable == "time_s")
       result.colours.push_back(colour);
@@ -245,7 +245,8 @@ void Diagnosis::look_at_remainder(TelemetryDiagnosis& result) {
     const std::size_t c = place(output);
     const double expected =
         coloured_noise(result.hypotheses->expected()[c], space_.block_count()).total_variance();
-    // What the model's own numbers could still take is no wander: whitened, a constant weighs next to nothing.
+    // What the model's own numbers could still take is no wander: whitened, a constant weighs next to
+    // nothing.
     const MatrixXd own = orthonormal(result.hypotheses->design(result.members)[c]);
     const VectorXd residual = result.final.residual[c];
     const VectorXd wander = residual - own * (own.transpose() * residual);

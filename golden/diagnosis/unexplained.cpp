@@ -160,7 +160,8 @@ void try_along(const Variable& variable, Index nodes, const Beside& beside, Rema
   MatrixXd x(beside.own.rows(), beside.own.cols() + count);
   x << beside.own, columns(Eigen::all, used);
   const Alone with = with_own_noise(x, beside.y, beside.segments, beside.price);
-  const double evidence = beside.minus_two_log - with.minus_two_log - beside.price * static_cast<double>(count);
+  const double evidence =
+      beside.minus_two_log - with.minus_two_log - beside.price * static_cast<double>(count);
   if (evidence <= best.evidence) return;
   best.evidence = evidence;
   best.variable = variable.name;

@@ -18,9 +18,9 @@ struct Remainder {
   double share = 0.0;          ///< of the squares that the baseline left beyond noise, still there
 };
 
-/// Tries free functions (linear splines, 8 to 64 nodes; 128 over the resonator's temperature) of every input for every output, beside a set of
-/// effects, noise estimated again for each. For every output the best one of an input, then the best one of time,
-/// where their evidence is above `threshold`.
+/// Tries free functions (linear splines, 8 to 64 nodes; 128 over the resonator's temperature) of every input
+/// for every output, beside a set of effects, noise estimated again for each. For every output the best one
+/// of an input, then the best one of time, where their evidence is above `threshold`.
 std::vector<Remainder> remainders(Hypotheses& hypotheses, const std::vector<Member>& members,
                                   double threshold);
 

@@ -176,7 +176,8 @@ TEST(Chain, KnowsEveryBlockOfTheCore) {
   // Where a verdict leaves several open, all are marked, in the wide and in the narrow drawing.
   const std::string open = chain_svg({.marks = {{"resonator, oscillator or chamber", ""}}, .note = {}});
   std::size_t marked = 0;
-  for (std::size_t at = open.find(" marked\""); at != std::string::npos; at = open.find(" marked\"", at + 1)) ++marked;
+  for (std::size_t at = open.find(" marked\""); at != std::string::npos; at = open.find(" marked\"", at + 1))
+    ++marked;
   EXPECT_EQ(marked, 6U);
   EXPECT_EQ(chain_svg({.marks = {{"teapot", ""}}, .note = {}}).find(" marked"), std::string::npos);
 }

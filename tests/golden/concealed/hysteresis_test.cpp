@@ -65,8 +65,8 @@ TEST_P(Hysteresis, OpensAsFarAsTheLoopOfARecordingOfTheFullRange) {
 }
 
 TEST(HysteresisOpening, ADuhemLoopOpensByItsClosedForm) {
-  // Between u = -1 and 1 the settled loop is y = -+1 +- 2 e^(-c (1 +- u)) / (1 + e^(-2 c)); at u = 0 the ways are
-  // 2 (1 - 1 / cosh c) apart, and the loop spans 2 tanh c.
+  // Between u = -1 and 1 the settled loop is y = -+1 +- 2 e^(-c (1 +- u)) / (1 + e^(-2 c)); at u = 0 the ways
+  // are 2 (1 - 1 / cosh c) apart, and the loop spans 2 tanh c.
   const double c = 4.0;
   const Series x = cycles(4000);
   EXPECT_NEAR(duhem(x, x, c).opening, (1.0 - 1.0 / std::cosh(c)) / std::tanh(c), 2e-3);

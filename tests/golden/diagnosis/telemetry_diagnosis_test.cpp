@@ -63,6 +63,29 @@ TEST(TelemetryDiagnosis, NamesHysteresis) {
                0.5 * 2.0 * (1.0 - 1.0 / std::cosh(half_range_degc / 6.0)));
 }
 
+TEST(TelemetryDiagnosis, NamesAQuadratureThatStepsWithTemperature) {
+  const auto result = diagnosed({.seed = 55, .strain_v = 4e-5});
+  ASSERT_EQ(result.named.size(), 1U);
+  EXPECT_EQ(result.named[0].effect, "frequency_split");
+}
+
+// Over slow curves a lag and a delay are the same but for their second order: neither may fall out unheard.
+TEST(TelemetryDiagnosis, ALoopsLagIsNeverTakenForADelayAlone) {
+  for (const double loop_s : {3.0, 6.0, 12.0}) {
+    const auto result = diagnosed({.seed = 58, .loop_s = loop_s});
+    const auto holds_lag = [](const Explanation& entry) {
+      return entry.effect == "pll_lag" ||
+             std::ranges::any_of(entry.near, [](const auto& rival) { return rival.first == "pll_lag"; });
+    };
+    EXPECT_TRUE(std::ranges::any_of(result.named, holds_lag) ||
+                std::ranges::any_of(result.ambiguous, holds_lag))
+        << loop_s;
+    EXPECT_TRUE(std::ranges::none_of(result.named, [](const Explanation& e) {
+      return e.effect == "time_shift";
+    })) << loop_s;
+  }
+}
+
 NominalModel with_names(const TelemetryDiagnosis& result) {
   NominalModel model = result.corrected;
   for (const auto& entry : result.named)

@@ -23,6 +23,8 @@ struct Recipe {
   double tau_scale = 1.0;       ///< of the model's time constant
   double wave_dph = 0.0;        ///< of the rate, one period each 6000 s: in no catalogue
   double warmth_degc = 0.0;     ///< final rise of the resonator while powered, time constant 1200 s
+  double strain_v = 0.0;        ///< of the quadrature: arctangent of (T - 18 degC) / 5 degC
+  double loop_s = 0.0;          ///< time constant of the counted frequency
   double swing = 1.0;           ///< of the case; 0: stands still
   double start_degc = 0.0;      ///< of the resonator, above the case
   Eigen::Index cut_rows = 0;    ///< power is off for these rows, from the 8000th
@@ -67,7 +69,7 @@ inline Telemetry telemetry(const Recipe& recipe) {
   const double tau = m.time_constant_s * recipe.tau_scale;
   double degc = at_case(0.0) + recipe.start_degc, before = degc, loop = 0.0, heat = 0.0, behind_case = degc;
   const auto powered = [&](Eigen::Index i) { return i < 8000 || i >= 8000 + recipe.cut_rows; };
-  double frequency_before = polynomial(m.frequency_hz, degc);
+  double frequency_before = polynomial(m.frequency_hz, degc), counted = 0.0;
   for (Eigen::Index i = 0; i < kRows; ++i) {
     for (int k = 0; k < kSteps && i > 0; ++k) {
       behind_case +=
@@ -85,13 +87,16 @@ inline Telemetry telemetry(const Recipe& recipe) {
     frequency_before = frequency;
     t.case_degc[i] = std::round((at_case(time) + 0.008 * normal(random)) * 100.0) / 100.0;
     t.amplitude[i] = amplitude;
+    counted +=
+        (i == 0 || recipe.loop_s == 0.0 ? 1.0 : -std::expm1(-1.0 / recipe.loop_s)) * (frequency - counted);
     t.outputs[place(Output::frequency)][i] =
-        frequency * (1.0 + recipe.duffing * (amplitude * amplitude - 1.0)) + 3e-5 * normal(random);
+        counted * (1.0 + recipe.duffing * (amplitude * amplitude - 1.0)) + 3e-5 * normal(random);
     t.outputs[place(Output::drive)][i] =
         amplitude * polynomial(m.drive_v, degc) * (1.0 + recipe.leak_per_h * time / 3600.0) +
         1.4e-4 * normal(random);
     t.outputs[place(Output::quadrature)][i] =
-        amplitude * polynomial(m.quadrature_v, degc) + 1.4e-4 * normal(random);
+        amplitude * (polynomial(m.quadrature_v, degc) + recipe.strain_v * std::atan((degc - 18.0) / 5.0)) +
+        1.4e-4 * normal(random);
     t.outputs[place(Output::rate)][i] =
         m.bias_dph[0] + m.bias_dph[1] * f + m.bias_dph[2] * f * f + m.bias_dph[4] * df +
         recipe.hysteresis_dph * loop + recipe.ripple_dph * std::sin(2.0 * std::numbers::pi * degc / 4.0) +
