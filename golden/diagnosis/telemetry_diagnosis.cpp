@@ -6,11 +6,10 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 
 #include "golden/diagnosis/explain.hpp"
-#include "golden/diagnosis/form_error.hpp"
+#include "golden/diagnosis/what_remains.hpp"
 
 namespace hemi::diagnosis {
 namespace {
@@ -21,22 +20,12 @@ using Eigen::VectorXd;
 using Members = std::vector<Member>;
 
 // In units of the score, twice a log likelihood.
-constexpr double kStructure = 50.0;  // a free function of an input
 constexpr double kStructureInTime = 150.0;
-constexpr double kBesideColour = 0.0;  // the same where a walk or 1/f noise would be named
-constexpr double kWander = 4.5;        // squares of an output that nobody explains, over those expected
-// Colour of the rate that the model does not state. A likelihood of variances scatters by the noise's
-// kurtosis: heavy tails of kurtosis 6 make 2.5 of what Gaussian noise does.
-constexpr double kColour = 60.0;
-// Of an effect's trace: no equation of ours is better, and what it leaves behind is no noise.
-constexpr double kEquations = 0.01;
 constexpr Index kFineNodes = 32;
 constexpr double kRecalibrate_p = 1e-6;
 constexpr double kRecalibrateTogether_p = 1e-12;
 constexpr double kMovedAlone = 4.5;
 constexpr double kRemaining = 0.35;  // of the squares beyond noise
-constexpr double kJump = 6.0;        // deviations
-constexpr Index kLeastJumps = 3;
 constexpr std::size_t kLeastRepeats = 3;
 constexpr int kRounds = 3;
 
@@ -70,8 +59,6 @@ class Diagnosis {
   void relinearise(NominalModel& model, Unsettled& unsettled, const Members& members, int times);
   Around search_from(NominalModel model, Unsettled unsettled);
   void compare_parameters(TelemetryDiagnosis& result);
-  double remaining_share(const TelemetryDiagnosis& result, Output output) const;
-  void look_at_remainder(TelemetryDiagnosis& result);
   void name_events(TelemetryDiagnosis& result);
   void decide(TelemetryDiagnosis& result);
 
@@ -154,109 +141,6 @@ void Diagnosis::compare_parameters(TelemetryDiagnosis& result) {
   const double square = z.dot(correlation.ldlt().solve(z));
   result.recalibration_p = boost::math::cdf(boost::math::complement(
       boost::math::chi_squared(static_cast<double>(kept.size())), std::max(square, 0.0)));
-}
-
-// Squares beyond what noise is expected to leave, after the effects, over those before them.
-double Diagnosis::remaining_share(const TelemetryDiagnosis& result, Output output) const {
-  const std::size_t c = place(output);
-  const auto& h = *result.hypotheses;
-  const Noise& expected = h.expected();
-  const auto beyond = [&](const Reduced& residual) {
-    const VectorXd e =
-        whiten(residual[c], space_.blocks(output), coloured_noise(expected[c], space_.block_count()));
-    return e.squaredNorm() - static_cast<double>(e.size());
-  };
-  const auto free = result.hypotheses->fit({}, expected);
-  const auto with = result.hypotheses->fit(result.members, expected);
-  const double before = beyond(free.residual);
-  return before <= 0.0 ? 0.0 : std::max(beyond(with.residual), 0.0) / before;
-}
-
-// What moves beyond the noise that is expected, and with no input.
-Remainder along_no_input(Output output, double evidence) {
-  Remainder remainder;
-  remainder.output = output;
-  remainder.evidence = evidence;
-  remainder.share = 1.0;
-  return remainder;
-}
-
-const Remainder* best_of(const std::vector<Remainder>& list, Output output) {
-  const Remainder* best = nullptr;
-  for (const auto& each : list)
-    if (each.output == output && (!best || each.evidence > best->evidence)) best = &each;
-  return best;
-}
-
-// Squares of the innovations that no noise makes: of the rows that stand kJump deviations off, if there are
-// several. What comes and goes looks like a walk to the fit of the noise; its steps do not.
-double jumps(const TelemetryDiagnosis& result, Output output) {
-  const std::size_t c = place(output);
-  const RowSpace& space = result.hypotheses->space();
-  const VectorXd white = whiten(result.final.residual[c], space.blocks(output),
-                                coloured_noise(result.final.noise[c], space.block_count()));
-  const auto off = white.array().abs() > kJump;
-  return off.count() < kLeastJumps ? 0.0 : off.select(white.array().square(), 0.0).sum();
-}
-
-// Deviation over the recording; a walk's about its mean is its end's over sqrt 6.
-double drift_of(const Colour& colour, const Simulation& s) {
-  const double duration_s = s.telemetry->step_s * static_cast<double>(s.telemetry->rows());
-  return colour.walk_over_flicker > 0.0 ? colour.walk * std::sqrt(duration_s / 6.0) : colour.flicker;
-}
-
-// Root mean square of what the effects do to an output.
-double size_of(const TelemetryDiagnosis& result, Output output) {
-  const std::size_t c = place(output);
-  VectorXd sum = VectorXd::Zero(result.hypotheses->space().rows(output));
-  for (std::size_t m = 0; m < result.members.size(); ++m) {
-    const MatrixXd& own = result.hypotheses->columns(result.members[m])[c];
-    sum += own * result.final.coefficients.segment(result.final.first[m], own.cols());
-  }
-  return std::sqrt(sum.squaredNorm() / static_cast<double>(std::max<Index>(sum.size(), 1)));
-}
-
-void Diagnosis::look_at_remainder(TelemetryDiagnosis& result) {
-  const auto functions = remainders(*result.hypotheses, result.members, kBesideColour);
-  for (const Output output : kOutputs) {
-    const Remainder* best = best_of(functions, output);
-    if (best && best->evidence > kStructure) result.remainders.push_back(*best);
-  }
-  std::vector<std::size_t> all(result.members.size());
-  std::iota(all.begin(), all.end(), 0U);
-  const Reduced forms = form_directions(*result.hypotheses, result.members, result.final, all);
-  const Colour colour = colour_of(*result.hypotheses, result.members, forms, Output::rate);
-  if (colour.evidence > kColour && !colour.is_line() &&
-      drift_of(colour, result.hypotheses->simulation()) > kEquations * size_of(result, Output::rate)) {
-    // A walk takes what a function of an input would: that function must not be worth its price, unless time
-    // is the better input, which is what a walk looks like.
-    const Remainder* function = best_of(functions, Output::rate);
-    if (!function || function->variable == "time_s")
-      result.colours.push_back(colour);
-    else if (function->evidence <= kStructure)
-      result.remainders.push_back(*function);
-  }
-  if (colour.evidence > kColour && colour.is_line())
-    result.remainders.push_back(along_no_input(Output::rate, colour.evidence));
-  for (auto& remainder : result.remainders) remainder.share = remaining_share(result, remainder.output);
-  for (const Output output : {Output::frequency, Output::drive, Output::quadrature}) {
-    const Index rows = space_.rows(output);
-    if (rows < 64) continue;
-    const std::size_t c = place(output);
-    const double expected =
-        coloured_noise(result.hypotheses->expected()[c], space_.block_count()).total_variance();
-    // What the model's own numbers could still take is no wander: whitened, a constant weighs next to
-    // nothing.
-    const MatrixXd own = orthonormal(result.hypotheses->design(result.members)[c]);
-    const VectorXd residual = result.final.residual[c];
-    const VectorXd wander = residual - own * (own.transpose() * residual);
-    const double ratio = wander.squaredNorm() / (static_cast<double>(rows) * expected);
-    const double evidence =
-        ratio > kWander ? static_cast<double>(rows) * (ratio - 1.0) : jumps(result, output);
-    if (evidence == 0.0) continue;
-    result.remainders.push_back(along_no_input(output, evidence));
-    result.remainders.back().share = remaining_share(result, output);
-  }
 }
 
 // Explanation that single rows or a line give; its own test has been passed already.
