@@ -52,12 +52,12 @@ export async function open(browser, file, options = {}) {
   return { context, page, trouble };
 }
 
-/// Pixels of a plot's canvas in the colour of its first curve, and the share of the plotting area's columns that
+/// Pixels of a plot's canvas in the colour of one of its curves, and the share of the plotting area's columns that
 /// hold one.
-export const ink = (page, index) => page.evaluate(i => {
+export const ink = (page, index, series = 0) => page.evaluate(([i, k]) => {
   const { u } = hemiPlots[i], { canvas } = u.ctx, { left, top, width, height } = u.bbox;
   const data = u.ctx.getImageData(left, top, width, height).data;
-  const rgb = getComputedStyle(document.documentElement).getPropertyValue("--s0").trim().match(/[0-9a-f]{2}/gi).map(h => parseInt(h, 16));
+  const rgb = getComputedStyle(document.documentElement).getPropertyValue(`--s${k}`).trim().match(/[0-9a-f]{2}/gi).map(h => parseInt(h, 16));
   const columns = new Set();
   let count = 0;
   for (let p = 0; p < data.length; p += 4) {
@@ -66,7 +66,7 @@ export const ink = (page, index) => page.evaluate(i => {
     columns.add((p / 4) % width);
   }
   return { count, columns: columns.size / width, canvas: [canvas.width, canvas.height] };
-}, index);
+}, [index, series]);
 
 /// Resolves after the frame in which what was asked for is on the screen.
 export const painted = page => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
