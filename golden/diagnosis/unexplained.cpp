@@ -68,6 +68,7 @@ Reduced hats(const RowSpace& space, const ArrayXd& x, Index nodes, Output output
     traces[static_cast<std::size_t>(left + 1)][output][i] = place - static_cast<double>(left);
   }
   std::vector<const Trace*> list;
+  list.reserve(traces.size());
   for (const auto& trace : traces) list.push_back(&trace);
   return space.reduce(list);
 }
