@@ -192,20 +192,6 @@ std::string drawing(const Grid& grid, const std::vector<std::string>& marked, st
   return svg + box(grid, kRateFilter, is_marked(kRateFilter.id)) + "</svg>";
 }
 
-}  // namespace
-
-std::optional<std::string> stage_of(std::string_view name) {
-  std::string key;
-  for (const char c : name)
-    key += c == ' ' || c == '-' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (key == kRateFilter.id || std::ranges::find(kBlocks, key, &Block::id) != kBlocks.end()) return key;
-  const auto alias = std::ranges::find(kAliases, key, &Alias::name);
-  if (alias == kAliases.end()) return std::nullopt;
-  return std::string(alias->id);
-}
-
-namespace {
-
 /// Blocks of "resonator, oscillator or chamber".
 std::vector<std::string> stages_of(std::string_view names) {
   constexpr std::string_view kBetween[] = {", ", " or "};
@@ -225,6 +211,16 @@ std::vector<std::string> stages_of(std::string_view names) {
 }
 
 }  // namespace
+
+std::optional<std::string> stage_of(std::string_view name) {
+  std::string key;
+  for (const char c : name)
+    key += c == ' ' || c == '-' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (key == kRateFilter.id || std::ranges::find(kBlocks, key, &Block::id) != kBlocks.end()) return key;
+  const auto alias = std::ranges::find(kAliases, key, &Alias::name);
+  if (alias == kAliases.end()) return std::nullopt;
+  return std::string(alias->id);
+}
 
 std::string chain_svg(const Chain& chain) {
   std::vector<std::string> marked;

@@ -29,7 +29,8 @@ async function opensInSilence(file) {
     // Where an effect changes nothing in a channel, the curve after lies on the one before, and hides it.
     const hidden = await page.evaluate(k => {
       const [a, b] = hemiPlots[k].spec.series;
-      return b !== undefined && a.y.length === b.y.length && a.y.every((v, j) => Math.abs(v - b.y[j]) <= 0.01 * Math.max(...a.y.map(Math.abs)));
+      const close = 0.01 * Math.max(...a.y.map(Math.abs));
+      return b !== undefined && a.y.length === b.y.length && a.y.every((v, j) => Math.abs(v - b.y[j]) <= close);
     }, i);
     const { count, columns } = await ink(page, i, hidden ? 1 : 0);
     // A marker with its interval is nine pixels wide; half of that counts.
