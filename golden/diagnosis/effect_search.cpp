@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "golden/diagnosis/scaled_normal.hpp"
 
@@ -49,6 +50,23 @@ double explained(const MatrixXd& products, const VectorXd& with_data) {
 const std::string& kind_of(const std::string& effect) {
   static const std::string kOfClock = "oscillator_ageing", kOfResonator = "frequency_ageing";
   return effect == kOfClock ? kOfResonator : effect;
+}
+
+// Effects that came one after another may have taken each other's place.
+std::optional<ScoredSet> swapped_for_the_better(const ScoredSet& best,
+                                                const std::vector<std::vector<Rival>>& rivals) {
+  const Rival* least = nullptr;
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    if (rivals[i].empty() || rivals[i].front().gap >= (least ? least->gap : 0.0)) continue;
+    least = &rivals[i].front();
+    place = i;
+  }
+  if (!least) return std::nullopt;
+  ScoredSet swapped = best;
+  swapped.members[place] = least->member;
+  swapped.score += least->gap;
+  return swapped;
 }
 
 }  // namespace
@@ -291,22 +309,6 @@ std::vector<Rival> EffectSearch::rivals_of(const ScoredSet& best, std::size_t pl
   }
   std::ranges::sort(rivals, [](const Rival& a, const Rival& b) { return a.gap < b.gap; });
   return rivals;
-}
-
-// Effects that came one after another may have taken each other's place.
-std::optional<ScoredSet> EffectSearch::swapped_for_the_better(const ScoredSet& best,
-                                                              const std::vector<std::vector<Rival>>& rivals) {
-  const Rival* least = nullptr;
-  std::size_t place = 0;
-  for (std::size_t i = 0; i < rivals.size(); ++i) {
-    if (rivals[i].empty() || rivals[i].front().gap >= (least ? least->gap : 0.0)) continue;
-    least = &rivals[i].front();
-    place = i;
-  }
-  if (!least) return std::nullopt;
-  Members members = best.members;
-  members[place] = least->member;
-  return scored(std::move(members));
 }
 
 SearchResult EffectSearch::run() {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
-
 #include "golden/diagnosis/hypothesis.hpp"
 
 namespace hemi::diagnosis {
@@ -62,8 +60,6 @@ class EffectSearch {
   /// Without the members that are not worth kWorth; `without` of the rest.
   ScoredSet worthy(ScoredSet set, std::vector<double>& without);
   std::vector<Rival> rivals_of(const ScoredSet& best, std::size_t place);
-  std::optional<ScoredSet> swapped_for_the_better(const ScoredSet& best,
-                                                  const std::vector<std::vector<Rival>>& rivals);
 
   Hypotheses& hypotheses_;
 };

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Heat: how the resonator's temperature follows the case's, and what of it reaches the rate.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "golden/diagnosis/effect_family.hpp"
@@ -110,25 +112,29 @@ double opening(const ArrayXd& along_full_loop) {
   return (up - along_full_loop.tail(kLoopRows).reverse()).abs().maxCoeff();
 }
 
-// Radii as shares of the half range of T, one column each.
+// Radii and ways along T are shares of its half range.
+double of_half_range(const Simulation& s, double share) {
+  return 0.5 * share * span(s.smooth_degc);
+}
+
+// Radii one column each.
 EffectFamily hysteresis(std::vector<Shape> grid, bool shaped) {
   EffectFamily family;
   family.effect = "thermal_hysteresis";
   family.form = "rate += sum w_i (play(T, r_i) - T)";
   if (shaped) family.spacing = Shape(grid[0].size(), kRadiusRatio);
   family.grid = std::move(grid);
-  const auto radius = [](const Simulation& s, double share) { return 0.5 * share * span(s.smooth_degc); };
-  family.columns = [radius](const Simulation& s, const Shape& radii) {
+  family.columns = [](const Simulation& s, const Shape& radii) {
     std::vector<Trace> columns;
     for (const double share : radii)
-      columns.push_back(in_rate(play(s.smooth_degc, radius(s, share)) - s.smooth_degc));
+      columns.push_back(in_rate(play(s.smooth_degc, of_half_range(s, share)) - s.smooth_degc));
     return columns;
   };
   // What is a function of T alone the bias model takes, which is why the columns are less T.
-  family.figures = [radius](const Simulation& s, const Shape& c, const Shape& radii) {
+  family.figures = [](const Simulation& s, const Shape& c, const Shape& radii) {
     const ArrayXd way = full_loop(s);
     ArrayXd sum = ArrayXd::Zero(way.size());
-    for (std::size_t i = 0; i < radii.size(); ++i) sum += c[i] * play(way, radius(s, radii[i]));
+    for (std::size_t i = 0; i < radii.size(); ++i) sum += c[i] * play(way, of_half_range(s, radii[i]));
     return std::vector<Figure>{{"loop_height", "deg/h", opening(sum)}};
   };
   return family;
@@ -150,12 +156,11 @@ EffectFamily exponential_hysteresis() {
     }
     return h;
   };
-  const auto length = [](const Simulation& s, double share) { return 0.5 * share * span(s.smooth_degc); };
-  family.columns = [=](const Simulation& s, const Shape& shape) {
-    return std::vector<Trace>{in_rate(memory(s.smooth_degc, length(s, shape[0])))};
+  family.columns = [memory](const Simulation& s, const Shape& shape) {
+    return std::vector<Trace>{in_rate(memory(s.smooth_degc, of_half_range(s, shape[0])))};
   };
-  family.figures = [=](const Simulation& s, const Shape& c, const Shape& shape) {
-    const double height = opening(memory(full_loop(s), length(s, shape[0])));
+  family.figures = [memory](const Simulation& s, const Shape& c, const Shape& shape) {
+    const double height = opening(memory(full_loop(s), of_half_range(s, shape[0])));
     return std::vector<Figure>{{"loop_height", "deg/h", std::abs(c[0]) * height}};
   };
   return family;
@@ -178,8 +183,9 @@ ArrayXd warmth(const Simulation& s, double t0, bool restarts) {
 EffectFamily self_heating(const Simulation& s, bool restarts, int bodies) {
   EffectFamily family;
   family.effect = "self_heating";
-  family.form = bodies == 1 ? "T += rise (1 - exp(-t / t0))"
-                            : "T += r1 (1 - exp(-t / t0)) + r2 (1 - exp(-t / (0.2 t0)))";
+  family.form = bodies == 1
+                    ? "T += rise (1 - exp(-t / t0))"
+                    : fmt::format("T += r1 (1 - exp(-t / t0)) + r2 (1 - exp(-t / ({:g} t0)))", kFastPart);
   if (restarts) family.form += ", again after every power cut";
   family.grid = geometric_grid(60.0, 2.0 * s.time_s[s.time_s.size() - 1], kThermalLagRatio);
   family.spacing = {kThermalLagRatio};

@@ -18,24 +18,25 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr Index kMostNodes = 64;
 constexpr double kMemories_s[] = {300.0, 900.0, 2700.0};
 
 struct Variable {
   std::string name;
   ArrayXd values;
-  Index most_nodes = 64;
+  Index most_nodes = kMostNodes;
 };
 
 std::vector<Variable> variables_of(const Simulation& s) {
   const Telemetry& t = *s.telemetry;
   std::vector<Variable> list;
-  const auto add = [&](const char* name, const ArrayXd& values, Index most_nodes = 64) {
+  const auto add = [&](const char* name, const ArrayXd& values, Index most_nodes = kMostNodes) {
     if (span(values) > 1e-9 * (1.0 + values.abs().maxCoeff())) list.push_back({name, values, most_nodes});
   };
   add("time_s", s.time_s);
   // A thermometer that shows nothing but its noise orders the noise that it makes itself.
   if (span(s.smooth_case_degc) > kLeastSwing_degc) {
-    add("resonator_temp_degc", s.smooth_degc, 128);  // fringes of light in a gap stand close
+    add("resonator_temp_degc", s.smooth_degc, 2 * kMostNodes);  // fringes of light in a gap stand close
     add("resonator_temp_slope_degc_s", slope_in_time(s.smooth_degc, t.step_s));
     add("case_temp_degc", s.smooth_case_degc);
   }

@@ -26,20 +26,24 @@ constexpr double kEquations = 0.01;
 constexpr double kJump = 6.0;  // deviations
 constexpr Index kLeastJumps = 3;
 
-// Squares beyond what noise is expected to leave, after the effects, over those before them.
-double remaining_share(const TelemetryDiagnosis& result, Output output) {
-  const std::size_t c = place(output);
+// Shares of all remainders: squares beyond what noise is expected to leave, after the effects, over those
+// before them.
+void state_shares(TelemetryDiagnosis& result) {
+  if (result.remainders.empty()) return;
   const RowSpace& space = result.hypotheses->space();
   const Noise& expected = result.hypotheses->expected();
-  const auto beyond = [&](const Reduced& residual) {
-    const VectorXd e =
-        whiten(residual[c], space.blocks(output), coloured_noise(expected[c], space.block_count()));
-    return e.squaredNorm() - static_cast<double>(e.size());
-  };
   const auto free = result.hypotheses->fit({}, expected);
   const auto with = result.hypotheses->fit(result.members, expected);
-  const double before = beyond(free.residual);
-  return before <= 0.0 ? 0.0 : std::max(beyond(with.residual), 0.0) / before;
+  for (auto& remainder : result.remainders) {
+    const std::size_t c = place(remainder.output);
+    const auto noise = coloured_noise(expected[c], space.block_count());
+    const auto beyond = [&](const Reduced& residual) {
+      const VectorXd e = whiten(residual[c], space.blocks(remainder.output), noise);
+      return e.squaredNorm() - static_cast<double>(e.size());
+    };
+    const double before = beyond(free.residual);
+    remainder.share = before <= 0.0 ? 0.0 : std::max(beyond(with.residual), 0.0) / before;
+  }
 }
 
 // What moves beyond the noise that is expected, and with no input.
@@ -47,7 +51,6 @@ Remainder along_no_input(Output output, double evidence) {
   Remainder remainder;
   remainder.output = output;
   remainder.evidence = evidence;
-  remainder.share = 1.0;
   return remainder;
 }
 
@@ -108,7 +111,6 @@ void look_at_functions_and_colour(TelemetryDiagnosis& result) {
   }
   if (colour.evidence > kColour && colour.is_line())
     result.remainders.push_back(along_no_input(Output::rate, colour.evidence));
-  for (auto& remainder : result.remainders) remainder.share = remaining_share(result, remainder.output);
 }
 
 void look_at_wander(TelemetryDiagnosis& result) {
@@ -127,9 +129,7 @@ void look_at_wander(TelemetryDiagnosis& result) {
     const double ratio = wander.squaredNorm() / (static_cast<double>(rows) * expected);
     const double evidence =
         ratio > kWander ? static_cast<double>(rows) * (ratio - 1.0) : jumps(result, output);
-    if (evidence == 0.0) continue;
-    result.remainders.push_back(along_no_input(output, evidence));
-    result.remainders.back().share = remaining_share(result, output);
+    if (evidence > 0.0) result.remainders.push_back(along_no_input(output, evidence));
   }
 }
 
@@ -138,6 +138,7 @@ void look_at_wander(TelemetryDiagnosis& result) {
 void look_at_remainder(TelemetryDiagnosis& result) {
   look_at_functions_and_colour(result);
   look_at_wander(result);
+  state_shares(result);
 }
 
 }  // namespace hemi::diagnosis
