@@ -67,11 +67,20 @@ Json parameters(const Explanation& entry) {
   return list;
 }
 
+std::string explanation(const Explanation& entry) {
+  std::string text = explanation_of(entry.effect);
+  for (const auto& each : entry.figures)
+    if (each.held_by_start > 0.0)
+      text += fmt::format(" Up to {:.2g} {} more would look like a start at another temperature.",
+                          each.held_by_start, each.figure.unit);
+  return text;
+}
+
 Json effect(const Explanation& entry) {
   return {{"id", entry.effect},
           {"probability", entry.probability},
           {"equation", entry.form},
-          {"explanation", explanation_of(entry.effect)},
+          {"explanation", explanation(entry)},
           {"parameters", parameters(entry)},
           {"score_lost_without", entry.worth}};
 }

@@ -143,6 +143,13 @@ LeftOut left_out(const Hypotheses& h, const Reduced& all, const Noise& noise, co
   return result;
 }
 
+// Of the resonator, from the case's.
+double start_degc(const Hypotheses& h, const HypothesisFit& fit) {
+  const auto start = std::ranges::find(h.baseline(), "start", &BaselineColumn::name);
+  if (start == h.baseline().end()) return 0.0;
+  return h.simulation().unsettled.start_degc + fit.coefficients[start - h.baseline().begin()];
+}
+
 std::vector<RowRange> even_blocks(Index rows, Index most) {
   std::vector<RowRange> blocks;
   const Index count = std::min(most, rows);
@@ -245,7 +252,8 @@ std::vector<std::vector<Interval>> intervals(Hypotheses& h, const std::vector<Me
     const VectorXd variance = (gradient * own * gradient.transpose()).diagonal();
     for (std::size_t f = 0; f < centre.size(); ++f) {
       const double half = kNormal95 * std::sqrt(std::max(variance[static_cast<Index>(f)], 0.0));
-      entries.push_back({centre[f], centre[f].value - half, centre[f].value + half});
+      const double held = f == 0 && family.start_may_hold ? std::max(0.0, -start_degc(h, fit)) : 0.0;
+      entries.push_back({centre[f], centre[f].value - half, centre[f].value + half + held, held});
     }
     list.push_back(std::move(entries));
   }

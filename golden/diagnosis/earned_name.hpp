@@ -32,6 +32,7 @@ std::vector<Gain> gains_left_out(Hypotheses& hypotheses, const std::vector<Membe
 struct Interval {
   Figure figure;
   double low = 0.0, high = 0.0;
+  double held_by_start = 0.0;  ///< of `high`: what the start temperature may hold of the figure
 };
 
 /// Figures of each member; covariance of coefficients and log shapes together, by the delta method, beside

@@ -35,6 +35,9 @@ struct EffectFamily {
   std::function<bool(const Simulation&, const std::vector<double>& coefficients,
                      const std::vector<double>& shape)>
       possible;
+  /// The first figure may be larger by what the start temperature lies below the case's: a part of this
+  /// effect has the trace of a resonator that begins at another temperature.
+  bool start_may_hold = false;
 };
 
 /// All forms that this recording could show: a channel that is not recorded, or an input that never moves,

@@ -43,7 +43,7 @@ constexpr double kUndetermined = 1.5;
 bool undetermined(const Explanation& entry) {
   if (entry.figures.empty()) return false;
   const Interval& first = entry.figures.front();
-  return 0.5 * (first.high - first.low) > kUndetermined * std::abs(first.figure.value);
+  return 0.5 * (first.high - first.held_by_start - first.low) > kUndetermined * std::abs(first.figure.value);
 }
 
 }  // namespace

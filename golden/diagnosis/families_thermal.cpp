@@ -203,6 +203,8 @@ EffectFamily self_heating(const Simulation& s, bool restarts, int bodies) {
   family.possible = [](const Simulation&, const Shape& c, const Shape&) {
     return c[0] > 0.0 && c.back() > 0.0 && c[0] < 30.0;
   };
+  // What the stem brings comes as slowly as the resonator follows its case.
+  family.start_may_hold = true;
   return family;
 }
 

@@ -127,6 +127,20 @@ TEST(TelemetryDiagnosis, NamesWarmthThatFadesInAPowerCut) {
   expect_named(diagnosed({.seed = 73, .warmth_degc = 0.5, .cut_rows = 1500}), "self_heating", 0.5);
 }
 
+// A resonator that began colder has the same trace: the interval must reach as far, and no farther where
+// nothing can be hidden.
+TEST(TelemetryDiagnosis, WarmthThatTheStartMayHoldIsInTheInterval) {
+  const auto hidden = diagnosed({.seed = 74, .warmth_degc = 0.1, .stem_degc = 0.4});
+  expect_named(hidden, "self_heating", 0.5);
+  const Interval& rise = hidden.named.at(0).figures.at(0);
+  EXPECT_LT(rise.low, 0.1);
+  EXPECT_GT(rise.high, 0.5);
+  EXPECT_LT(rise.high, 0.6);
+  const auto plain = diagnosed({.seed = 75, .warmth_degc = 0.1});
+  expect_named(plain, "self_heating", 0.1);
+  EXPECT_LT(plain.named.at(0).figures.at(0).high, 0.2);
+}
+
 // As slow as a random walk is, but no noise: its innovations show a line.
 TEST(TelemetryDiagnosis, ASlowWaveIsNoRandomWalk) {
   const auto result = diagnosed({.seed = 81, .wave_dph = 0.3});

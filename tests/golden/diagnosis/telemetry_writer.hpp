@@ -23,6 +23,7 @@ struct Recipe {
   double tau_scale = 1.0;       ///< of the model's time constant
   double wave_dph = 0.0;        ///< of the rate, one period each 6000 s: in no catalogue
   double warmth_degc = 0.0;     ///< final rise of the resonator while powered, time constant 1200 s
+  double stem_degc = 0.0;       ///< of it as well, but as slowly as the resonator follows its case
   double strain_v = 0.0;        ///< of the quadrature: arctangent of (T - 18 degC) / 5 degC
   double loop_s = 0.0;          ///< time constant of the counted frequency
   double swing = 1.0;           ///< of the case; 0: stands still
@@ -67,7 +68,7 @@ inline Telemetry telemetry(const Recipe& recipe) {
   for (auto& output : t.outputs) output = Eigen::VectorXd::Zero(kRows);
   t.powered = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(kRows, true);
   const double tau = m.time_constant_s * recipe.tau_scale;
-  double degc = at_case(0.0) + recipe.start_degc, before = degc, loop = 0.0, heat = 0.0, behind_case = degc;
+  double degc = at_case(0.0) + recipe.start_degc, before = degc, loop = 0.0, heat = 0.0, stem = 0.0, behind_case = degc;
   const auto powered = [&](Eigen::Index i) { return i < 8000 || i >= 8000 + recipe.cut_rows; };
   double frequency_before = polynomial(m.frequency_hz, degc), counted = 0.0;
   for (Eigen::Index i = 0; i < kRows; ++i) {
@@ -75,8 +76,9 @@ inline Telemetry telemetry(const Recipe& recipe) {
       behind_case +=
           (at_case(static_cast<double>(i - 1) + (k + 0.5) / kSteps) - behind_case) / (tau * kSteps);
       heat += ((powered(i - 1) ? recipe.warmth_degc : 0.0) - heat) / (1200.0 * kSteps);
+      stem += ((powered(i - 1) ? recipe.stem_degc : 0.0) - stem) / (tau * kSteps);
     }
-    degc = behind_case + heat;
+    degc = behind_case + heat + stem;
     const double step = (degc - before) / 6.0;
     loop += step - std::abs(step) * loop;
     before = degc;
