@@ -54,12 +54,11 @@ void explain(TelemetryDiagnosis& result, const SearchResult& found) {
   result.final = h.fit(result.members);
   result.baseline = h.fit({}, result.final.noise);
   const auto figures = intervals(h, result.members, result.final);
-  result.improvement = improvements(h, result.members, result.final);
   std::vector<Output> mains;
   for (std::size_t i = 0; i < result.members.size(); ++i)
     mains.push_back(main_output(h, result.members[i], result.final, i));
-  std::vector<Gain> alone;
-  if (mains.size() > 1) alone = gains_left_out(h, result.members, result.final, mains);
+  const auto [improvement, alone] = held_out(h, result.members, result.final, mains);
+  result.improvement = improvement;
   for (std::size_t i = 0; i < result.members.size(); ++i) {
     const auto& family = h.families()[result.members[i].family];
     Explanation entry;

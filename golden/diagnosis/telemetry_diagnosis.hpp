@@ -9,6 +9,7 @@
 #include "golden/diagnosis/earned_name.hpp"
 #include "golden/diagnosis/effect_search.hpp"
 #include "golden/diagnosis/events.hpp"
+#include "golden/diagnosis/held_out.hpp"
 #include "golden/diagnosis/lines.hpp"
 #include "golden/diagnosis/unexplained.hpp"
 
