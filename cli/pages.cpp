@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "cli/invocation.hpp"
 #include "cli/report/ticks.hpp"
+#include "cli/summary.hpp"
 
 namespace hemi::cli {
 namespace {
@@ -189,6 +191,16 @@ void judge_run(const recording::Json& summary, report::Report& document) {
                                                             number("quality_factor_error"))});
 }
 
+/// Without the frequency of a loop that has not locked: it would set the axis, and all else were a line.
+recording::Recording where_locked(recording::Recording output) {
+  const auto* status = output.find("status");
+  const auto frequency = std::ranges::find(output.channels, "frequency_hz", &recording::Channel::name);
+  if (status == nullptr || frequency == output.channels.end()) return output;
+  for (std::size_t i = 0; i < status->values.size(); ++i)
+    if (!locked(status->values[i])) frequency->values[i] = std::numeric_limits<double>::quiet_NaN();
+  return output;
+}
+
 }  // namespace
 
 std::string write_run_page(const std::string& target, const recording::Recording& output,
@@ -203,7 +215,8 @@ std::string write_run_page(const std::string& target, const recording::Recording
   Section words{"In words", {}};
   words.parts.emplace_back(report::Verbatim{text});
   document.sections = {
-      section_of("Outputs over time", channel_plots(output, written.empty() ? "" : stretch_command(written))),
+      section_of("Outputs over time",
+                 channel_plots(where_locked(output), written.empty() ? "" : stretch_command(written))),
       std::move(words)};
   report::write_report(path, document);
   return path;

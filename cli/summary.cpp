@@ -18,6 +18,8 @@ constexpr std::uint64_t bit(config::StatusBit b) {
 constexpr std::uint64_t unusable =
     bit(config::status_unlocked) | bit(config::status_holdover) | bit(config::status_frequency_invalid);
 
+constexpr double kRingDown = 3.0;  // fall of a ring-down's logarithm over its scatter
+
 /// Straight line through log amplitude, all outputs alike: what scatters a ring-down is mostly neighbouring
 /// lines, which shrink with it. Outputs overlap by half, so n of them count as n / 2.
 void fit_decay(const std::vector<double>& t, const std::vector<double>& a, RunSummary& s) {
@@ -35,8 +37,11 @@ void fit_decay(const std::vector<double>& t, const std::vector<double>& a, RunSu
     yy += y * y;
   }
   const double slope = ty / tt;
-  const double error = std::sqrt((yy - slope * ty) / tt / (0.5 * n));
+  const double squares = yy - slope * ty;
+  const double error = std::sqrt(squares / tt / (0.5 * n));
   if (!(slope < -3.0 * error)) return;
+  // Under an amplitude loop the line's slope means nothing: such an amplitude scatters by more than it falls.
+  if (!(slope * (t.front() - t.back()) > kRingDown * std::sqrt(squares / n))) return;
   s.damping_time_s = -1.0 / slope;
   s.quality_factor = std::numbers::pi * s.frequency_hz * *s.damping_time_s;
   s.quality_factor_error = *s.quality_factor * error / -slope;
@@ -62,6 +67,10 @@ double phase_slope(const std::vector<double>& f, std::size_t begin, std::size_t 
 
 }  // namespace
 
+bool locked(double status) {
+  return (static_cast<std::uint64_t>(status) & unusable) == 0;
+}
+
 RunSummary summarise_capture(const recording::Recording& output, double from_s, double to_s) {
   const auto& time = output.find("time_s")->values;
   const auto& frequency = output.find("frequency_hz")->values;
@@ -73,7 +82,7 @@ RunSummary summarise_capture(const recording::Recording& output, double from_s, 
   for (std::size_t i = 0; i < time.size(); ++i) {
     if (time[i] < from_s || time[i] > to_s) continue;
     ++window;
-    if ((static_cast<std::uint64_t>(status[i]) & unusable) != 0 || !(amplitude[i] > 0)) continue;
+    if (!locked(status[i]) || !(amplitude[i] > 0)) continue;
     t.push_back(time[i]);
     f.push_back(frequency[i]);
     a.push_back(amplitude[i]);

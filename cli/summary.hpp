@@ -25,6 +25,8 @@ struct RunSummary {
   std::optional<double> quality_factor_error;  ///< one sigma, from the scatter about the line
 };
 
+/// Whether an output's `status` says that its frequency can be used.
+bool locked(double status);
 RunSummary summarise_capture(const recording::Recording& output, double from_s, double to_s);
 std::string to_text(const RunSummary& summary);
 recording::Json to_json(const RunSummary& summary);
