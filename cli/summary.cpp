@@ -4,19 +4,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdint>
 #include <numbers>
-
-#include "hls/config.hpp"
 
 namespace hemi::cli {
 namespace {
-
-constexpr std::uint64_t bit(config::StatusBit b) {
-  return std::uint64_t{1} << b;
-}
-constexpr std::uint64_t unusable =
-    bit(config::status_unlocked) | bit(config::status_holdover) | bit(config::status_frequency_invalid);
 
 constexpr double kRingDown = 3.0;  // fall of a ring-down's logarithm over its scatter
 
@@ -66,10 +57,6 @@ double phase_slope(const std::vector<double>& f, std::size_t begin, std::size_t 
 }
 
 }  // namespace
-
-bool locked(double status) {
-  return (static_cast<std::uint64_t>(status) & unusable) == 0;
-}
 
 RunSummary summarise_capture(const recording::Recording& output, double from_s, double to_s) {
   const auto& time = output.find("time_s")->values;

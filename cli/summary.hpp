@@ -3,11 +3,13 @@
 #ifndef HEMI_CLI_SUMMARY_HPP
 #define HEMI_CLI_SUMMARY_HPP
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
 #include "cli/recording/json.hpp"
 #include "cli/recording/recording.hpp"
+#include "hls/config.hpp"
 
 namespace hemi::cli {
 
@@ -26,7 +28,12 @@ struct RunSummary {
 };
 
 /// Whether an output's `status` says that its frequency can be used.
-bool locked(double status);
+constexpr bool locked(double status) {
+  constexpr auto bit = [](config::StatusBit b) { return std::uint64_t{1} << b; };
+  return (static_cast<std::uint64_t>(status) & (bit(config::status_unlocked) | bit(config::status_holdover) |
+                                                bit(config::status_frequency_invalid))) == 0;
+}
+
 RunSummary summarise_capture(const recording::Recording& output, double from_s, double to_s);
 std::string to_text(const RunSummary& summary);
 recording::Json to_json(const RunSummary& summary);
