@@ -68,7 +68,8 @@ inline Telemetry telemetry(const Recipe& recipe) {
   for (auto& output : t.outputs) output = Eigen::VectorXd::Zero(kRows);
   t.powered = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(kRows, true);
   const double tau = m.time_constant_s * recipe.tau_scale;
-  double degc = at_case(0.0) + recipe.start_degc, before = degc, loop = 0.0, heat = 0.0, stem = 0.0, behind_case = degc;
+  double degc = at_case(0.0) + recipe.start_degc, before = degc, loop = 0.0, heat = 0.0, stem = 0.0,
+         behind_case = degc;
   const auto powered = [&](Eigen::Index i) { return i < 8000 || i >= 8000 + recipe.cut_rows; };
   double frequency_before = polynomial(m.frequency_hz, degc), counted = 0.0;
   for (Eigen::Index i = 0; i < kRows; ++i) {
