@@ -30,7 +30,8 @@ struct RunSummary {
 /// Whether an output's `status` says that its frequency can be used.
 constexpr bool locked(double status) {
   constexpr auto bit = [](config::StatusBit b) { return std::uint64_t{1} << b; };
-  return (static_cast<std::uint64_t>(status) & (bit(config::status_unlocked) | bit(config::status_holdover) |
+  return status >= 0.0 &&
+         (static_cast<std::uint64_t>(status) & (bit(config::status_unlocked) | bit(config::status_holdover) |
                                                 bit(config::status_frequency_invalid))) == 0;
 }
 
