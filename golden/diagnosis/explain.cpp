@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "golden/diagnosis/form_error.hpp"
 
@@ -57,8 +58,9 @@ void explain(TelemetryDiagnosis& result, const SearchResult& found) {
   std::vector<Output> mains;
   for (std::size_t i = 0; i < result.members.size(); ++i)
     mains.push_back(main_output(h, result.members[i], result.final, i));
-  const auto [improvement, alone] = held_out(h, result.members, result.final, mains);
-  result.improvement = improvement;
+  HeldOut unseen = held_out(h, result.members, result.final, result.baseline, mains);
+  result.improvement = std::move(unseen.improvements);
+  const std::vector<Gain>& alone = unseen.alone;
   for (std::size_t i = 0; i < result.members.size(); ++i) {
     const auto& family = h.families()[result.members[i].family];
     Explanation entry;

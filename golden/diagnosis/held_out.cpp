@@ -115,9 +115,9 @@ Index first_row(const RowSpace& space, Output output) {
 }
 
 std::vector<Improvement> improvements(Hypotheses& h, const std::vector<Member>& members,
-                                      const HypothesisFit& fit, const LeftOut& after) {
+                                      const HypothesisFit& fit, const HypothesisFit& baseline,
+                                      const LeftOut& after) {
   std::vector<Improvement> list;
-  const HypothesisFit baseline = h.fit({}, fit.noise);
   const LeftOut before = left_out(h, h.baseline_rows(), fit.noise, baseline.coefficients);
   for (const Output output : kOutputs) {
     const std::size_t c = place(output);
@@ -153,9 +153,9 @@ Gain gain_of_one(Hypotheses& h, const std::vector<Member>& members, const Hypoth
 }  // namespace
 
 HeldOut held_out(Hypotheses& h, const std::vector<Member>& members, const HypothesisFit& fit,
-                 const std::vector<Output>& judged) {
+                 const HypothesisFit& baseline, const std::vector<Output>& judged) {
   const LeftOut after = left_out(h, shaped_design(h, members, fit).rows, fit.noise, fit.coefficients);
-  HeldOut result{improvements(h, members, fit, after), {}};
+  HeldOut result{improvements(h, members, fit, baseline, after), {}};
   if (members.size() > 1)
     for (std::size_t i = 0; i < members.size(); ++i)
       result.alone.push_back(gain_of_one(h, members, fit, i, judged[i], after.white));

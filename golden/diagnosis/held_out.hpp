@@ -24,9 +24,9 @@ struct HeldOut {
 
 /// Free runs of the baseline and of a set of effects from the inputs alone, parameters of both without every
 /// eighth of forty contiguous stretches in turn, shapes moved along with the coefficients (one Gauss-Newton
-/// step). A member alone is judged by its entry of `judged`.
+/// step). `baseline` has the noise of `fit`; a member alone is judged by its entry of `judged`.
 HeldOut held_out(Hypotheses& hypotheses, const std::vector<Member>& members, const HypothesisFit& fit,
-                 const std::vector<Output>& judged);
+                 const HypothesisFit& baseline, const std::vector<Output>& judged);
 
 /// Disagreement between the two halves of a recording over a member's trace, in standard deviations, a tenth
 /// of the trace at least; nothing where a half cannot tell it.

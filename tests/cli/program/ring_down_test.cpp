@@ -11,8 +11,8 @@ namespace {
 
 class RingDown : public ProgramTest {
  protected:
-  // 2 s at 100 kS/s, 4425 Hz: amplitude exp(-t / damping_time) times 1 + `ripple` at 5 Hz; figures from 0.5
-  // s.
+  // 2 s at 100 kS/s, 4425 Hz: amplitude exp(-t / damping_time) times 1 + `ripple` at 5 Hz. The first half
+  // second is not told.
   recording::Json run(double damping_time_s, double ripple) const {
     std::string text = "adc_x,adc_y\n";
     for (int i = 0; i < 200'000; ++i) {
